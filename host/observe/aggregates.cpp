@@ -9,6 +9,7 @@
 
 #include "core/contact/cell_grid.hpp"
 #include "core/contact/surface_contacts.hpp"
+#include "core/contact/surface_patches.hpp"
 #include "core/membrane/geometry.hpp"
 
 namespace rouleau::observe {
@@ -94,17 +95,18 @@ std::vector<double> smallest_gaps(core::Surroundings<3>& around, const core::Dom
     if (domain.periodic[k]) most = std::min(most, domain.period(k) / 2);
   }
   std::vector<double> gaps(s.cells.size(), std::numeric_limits<double>::infinity());
-  std::vector<core::SurfaceContact> of_cell;
-  for (double reach = std::min(4.0, most); around.show(reach, open_ones(s, gaps)); reach = std::min(2 * reach, most)) {
-    const core::SurfaceContacts all = core::SurfaceContacts::within(reach, s, domain);
-    for (const int cell : s.known_cells()) {
-      all.find(cell, s, of_cell);
-      for (const core::SurfaceContact& contact : of_cell) {  // which both cells feel
-        gaps[cell] = std::min(gaps[cell], contact.distance);
-        gaps[contact.other] = std::min(gaps[contact.other], contact.distance);
-      }
+  std::vector<int> near;
+  std::vector<char> open = open_ones(s, gaps);
+  for (double reach = std::min(4.0, most); around.show(reach, open); reach = std::min(2 * reach, most)) {
+    core::SurfacePatches patches(s, domain);
+    const core::CellGrid<3> grid(around.boxes(), reach, domain);
+    for (const int cell : s.own_cells()) {
+      if (open[cell] == 0 || !around.boxes()[cell].usable()) continue;
+      grid.find(cell, near);
+      gaps[cell] = patches.gap(cell, near, around.boxes(), reach);
     }
     if (reach == most) break;
+    open = open_ones(s, gaps);
   }
   return gaps;
 }

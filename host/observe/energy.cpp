@@ -74,9 +74,9 @@ EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const units::Lattice
   if (!setting.domain.periodic[1]) {
     energy.wall_power = 0;
   }
+  const core::WallVelocity& walls = solver.fluid().last_walls();
   if (!setting.domain.periodic[1] && !setting.solid) {
-    const auto stress = solver.fluid().wall_stress();  // what the fluid does to the walls
-    const core::WallVelocity& walls = solver.fluid().last_walls();
+    const auto stress = solver.wall_stress();  // what is done to the walls
     energy.wall_power =
         -(stress.lower * walls.lower + stress.upper * walls.upper) * setting.domain.size[0] * depth * watt;
   }
@@ -91,10 +91,14 @@ EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const units::Lattice
     energy.bending = membrane.bending * joule;
     energy.membrane_dissipation = membrane.dissipation * watt;
     energy.total += energy.elastic + energy.bending;
-    // What corrected nodes give away and the lattice does not get is lost in the layers beside the membranes, which the
-    // lattice does not resolve and the correction stands for.
-    if (tasks->corrects_motion())
-      energy.viscous_dissipation += (given_away(solver.cells(), solver.ranks()) - fluid.membrane_power) * watt;
+    // What corrected nodes give away and neither the lattice nor a wall gets is lost in the layers beside the membranes,
+    // which the lattice does not resolve and the correction stands for.
+    if (tasks->corrects_motion()) {
+      const auto share = tasks->wall_share();
+      const double to_walls = share.lower[0] * walls.lower + share.upper[0] * walls.upper;
+      energy.viscous_dissipation +=
+          (given_away(solver.cells(), solver.ranks()) - fluid.membrane_power - to_walls) * watt;
+    }
     if (!membrane.unknown.empty()) energy.unknown = without_energy("membrane law", membrane.unknown);
     bool interact = false;
     tasks->for_each_interaction([&](const auto& forces) {

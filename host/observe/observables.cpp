@@ -305,8 +305,8 @@ Table series_table() {
            .value = output<&Snapshot::shear_rate>},
           {.name = "wall_stress_lower",
            .unit = "Pa",
-           .doc = "mean shear stress of the fluid on the lower wall, along +x, during the last step (in phase with "
-                  "`shear_rate`); `nan` without walls and before they have acted",
+           .doc = "mean shear stress on the lower wall (of a tube: on all of it) along +x in the last step, in phase "
+                  "with `shear_rate`; `nan` without walls and before they act",
            .value = output<&Snapshot::wall_stress_lower>,
            .has_means = true},
           {.name = "wall_stress_upper",
@@ -322,7 +322,8 @@ Table series_table() {
            .has_means = true},
           {.name = "particle_stress",
            .unit = "Pa",
-           .doc = "xy stress that the cells add: membrane forces and viscosity contrast, per area of the domain",
+           .doc = "xy stress that the cells add: all forces on membranes, between cells too, and viscosity contrast, "
+                  "per area of the domain",
            .value = output<&Snapshot::particle_stress>,
            .chart = "Particle stress xy"},
           {.name = "mach_max",

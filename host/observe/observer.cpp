@@ -95,7 +95,8 @@ double Observer::area_leakage(const core::CellNodes& cells, const core::Ranks<D>
 }
 
 template <int D>
-double Observer::momentum_residual(const core::CellNodes& m, double from_walls, const core::Ranks<D>& ranks) {
+double Observer::momentum_residual(const core::CellNodes& m, const std::array<double, 2>& from_walls,
+                                   const core::Ranks<D>& ranks) {
   const auto [net_x, net_y, net_z, magnitudes] = sums_over<4>(m, ranks, [&](int c) {
     std::array<double, 4> of_cell{};
     for (int i = m.cells[c].first; i < m.cells[c].end(); ++i) {
@@ -107,7 +108,7 @@ double Observer::momentum_residual(const core::CellNodes& m, double from_walls, 
     }
     return of_cell;
   });
-  const double net = std::hypot(std::hypot(net_x, net_y - from_walls), net_z);
+  const double net = std::hypot(std::hypot(net_x, net_y - from_walls[0]), net_z - from_walls[1]);
   return magnitudes > 0 ? net / magnitudes : 0;
 }
 
@@ -218,7 +219,7 @@ Snapshot Observer::observe(core::Solver<T, Set>& solver, const plan::StageSettin
   const core::Fluid<T, Set>& fluid = solver.fluid();
   const bool oscillates = setting.oscillation.any();
   if (!scene_->domain.periodic_y) {
-    const auto stress = fluid.wall_stress();
+    const auto stress = solver.wall_stress();
     snapshot.wall_stress_lower = units.to_si(stress.lower, units::dimension::pressure);
     snapshot.wall_stress_upper = units.to_si(stress.upper, units::dimension::pressure);
     if (setting.shear_rate != 0 && !oscillates)
@@ -257,7 +258,9 @@ Snapshot Observer::observe(core::Solver<T, Set>& solver, const plan::StageSettin
     // In layers a cell's share in the stress is not a matter of its membrane alone.
     snapshot.particle_stress =
         scene_->fluid.layers.empty()
-            ? units.to_si(particle_stress(cells, *scene_, viscosity, ranks), units::dimension::pressure)
+            ? units.to_si(particle_stress(cells, *scene_, viscosity, ranks,
+                                          [&](int c) { return solver.cell_tasks()->force_across_images(c); }),
+                          units::dimension::pressure)
             : std::numeric_limits<double>::quiet_NaN();
     core::Surroundings<Set::dimension> around = solver.cell_tasks()->surroundings();
     observe_cells(around, units, snapshot);
@@ -278,8 +281,10 @@ template double Observer::follow_area(const core::Membranes&, const core::Ranks<
 template double Observer::follow_area(const core::Surfaces&, const core::Ranks<3>&, int*);
 template double Observer::area_leakage(const core::CellNodes&, const core::Ranks<2>&, int*);
 template double Observer::area_leakage(const core::CellNodes&, const core::Ranks<3>&, int*);
-template double Observer::momentum_residual(const core::CellNodes&, double, const core::Ranks<2>&);
-template double Observer::momentum_residual(const core::CellNodes&, double, const core::Ranks<3>&);
+template double Observer::momentum_residual(const core::CellNodes&, const std::array<double, 2>&,
+                                            const core::Ranks<2>&);
+template double Observer::momentum_residual(const core::CellNodes&, const std::array<double, 2>&,
+                                            const core::Ranks<3>&);
 template Snapshot Observer::observe(core::Solver<float>&, const plan::StageSetting&, const core::Membranes&, bool);
 template Snapshot Observer::observe(core::Solver<double>&, const plan::StageSetting&, const core::Membranes&, bool);
 template Snapshot Observer::observe(core::Solver<float, core::D3Q19>&, const plan::StageSetting&, const core::Surfaces&,

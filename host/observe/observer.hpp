@@ -56,7 +56,7 @@ class Observer {
   /// Sum of nodal forces, less what walls do to the cells (along y), over the sum of their magnitudes: rounding only, or
   /// an internal force is unbalanced. All ranks together, of all cells.
   template <int D = 2>
-  static double momentum_residual(const core::CellNodes& cells, double from_walls = 0,
+  static double momentum_residual(const core::CellNodes& cells, const std::array<double, 2>& from_walls = {},
                                   const core::Ranks<D>& ranks = {});
 
   [[nodiscard]] const core::Domain<2>& domain() const { return domain_; }

@@ -7,16 +7,28 @@
 
 namespace rouleau::observe {
 
+namespace {
+
+/// -F_x y of a cell's nodes, from the middle of the box, and of what acts on them through images of other cells.
+double stress_of_forces(const core::CellNodes& nodes, int cell, const scene::Scene& scene,
+                        const ForceAcrossImages& across_images) {
+  const double height = scene.domain.nodes[1], middle = (height - 1) / 2;
+  double stress = across_images ? height * across_images(cell) : 0;
+  const core::CellRange& range = nodes.cells[cell];
+  for (int i = range.first; i < range.end(); ++i) stress -= nodes.force_x[i] * (nodes.y[i] - middle);
+  return stress;
+}
+
+}  // namespace
+
 double particle_stress(const core::Membranes& m, const scene::Scene& scene, double viscosity,
-                       const core::Ranks<2>& ranks) {
+                       const core::Ranks<2>& ranks, const ForceAcrossImages& across_images) {
   const double all = sum_over(m, ranks, [&](int number) {
-    double stress = 0;
+    double stress = stress_of_forces(m, number, scene, across_images);
     const core::CellRange& cell = m.cells[number];
-    const Eigen::Vector2d c = core::centroid(m, cell);
     const double ratio = scene.cell_types[cell.type].interior_viscosity / scene.fluid.viscosity;
     for (int i = cell.first; i < cell.end(); ++i) {
       const auto k = static_cast<std::size_t>(i), n = static_cast<std::size_t>(cell.next(i));
-      stress -= m.force_x[k] * (m.y[k] - c.y());
       // Outward normal times length of segment i, nodes counter-clockwise.
       const double nx = m.y[n] - m.y[k], ny = m.x[k] - m.x[n];
       const double ux = (m.velocity_x[k] + m.velocity_x[n]) / 2, uy = (m.velocity_y[k] + m.velocity_y[n]) / 2;
@@ -28,13 +40,11 @@ double particle_stress(const core::Membranes& m, const scene::Scene& scene, doub
 }
 
 double particle_stress(const core::Surfaces& s, const scene::Scene& scene, double viscosity,
-                       const core::Ranks<3>& ranks) {
+                       const core::Ranks<3>& ranks, const ForceAcrossImages& across_images) {
   const double all = sum_over(s, ranks, [&](int c) {
-    double stress = 0;
+    double stress = stress_of_forces(s, c, scene, across_images);
     const core::CellRange& cell = s.cells[c];
     const core::Mesh& mesh = s.type_of(c).mesh;
-    const double middle = core::inertia_ellipsoid(mesh, s.nodes(c)).center.y();
-    for (int i = cell.first; i < cell.end(); ++i) stress -= s.force_x[i] * (s.y[i] - middle);
     const double ratio = scene.cell_types[cell.type].interior_viscosity / scene.fluid.viscosity;
     if (ratio == 1) return stress;
     const std::vector<core::Vec<3>> twice_area = core::area_vectors(mesh, s.nodes(c));

@@ -123,7 +123,7 @@ struct Snapshot {
   double aggregate_size_weight_mean = 0;  ///< cells in the aggregate of a cell, averaged over cells; NaN without cells
   double relative_viscosity = 0;  ///< wall shear stress / (viscosity x shear rate), or of the flow rate; NaN: neither
   double shear_rate = 0;          ///< 1/s, of the walls over the last step; NaN where they do not move
-  double wall_stress_lower = 0, wall_stress_upper = 0;  ///< Pa, on each wall along x over the last step; NaN without
+  double wall_stress_lower = 0, wall_stress_upper = 0;  ///< Pa, on each wall along x; NaN without
   double pressure_gradient = 0;  ///< Pa/m, that drives the fluid beside fluid.body_force; NaN where none does
   double flow_rate = 0;          ///< m2/s, per depth, of a driven channel; NaN elsewhere
   double cell_free_layer_lower = 0, cell_free_layer_upper = 0;  ///< m; NaN without walls or cells

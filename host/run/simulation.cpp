@@ -153,11 +153,13 @@ class Simulation {
     part_ = find_part(boxes, std::move(owner));
     return solver_->cell_tasks()->pass_on(*part_);
   }
-  /// What walls do to the cells along y.
-  [[nodiscard]] double force_from_walls() const {
+  /// What walls do to the cells along y and z.
+  [[nodiscard]] std::array<double, 2> force_from_walls() const {
     const auto* tasks = solver_->cell_tasks();
-    return tasks != nullptr && tasks->wall_contacts() != nullptr ? tasks->wall_contacts()->net_force(cells_, ranks_)
-                                                                 : 0;
+    if (tasks == nullptr || tasks->wall_contacts() == nullptr) return {};
+    std::array<double, 2> force{tasks->wall_contacts()->net_force(cells_, ranks_), 0};
+    if constexpr (Set::dimension == 3) force[1] = tasks->wall_contacts()->net_force(cells_, ranks_, 2);
+    return force;
   }
 
   /// On the terminal, where what was lost is said even to whom wants no progress.

@@ -76,7 +76,7 @@ inline std::vector<Case> scenes_to_cut() {
         R"(/cells=[{"type": "rbc", "angle": "30 deg", "at": ["6 um", "6.2 um"]}])", "/numerics/tau=2",
         "/numerics/density_factor=800"}},
       {"held by a wall", four_cells, {shear, contrast, held_too, middle("44.688", "4.4")}},
-      {"held by a wall alone, slip correction", four_cells, {shear, slip, held_alone, middle("25.088", "4.4")}},
+      {"held by a wall alone, slip correction", four_cells, {shear, slip, held_alone, middle("25.088", "4.1")}},
       {"bonds with a wall, too", four_cells, {shear, bonds, bonds_too, middle("46.648", "4.4")}}};
 }
 
@@ -179,7 +179,7 @@ inline std::vector<Case> scenes_in_space() {
        {f64, R"(/domain={"size": ["12 um", "12 um", "12 um"], "nodes": [32, 32, 32],
                          "walls": {"tube": {"radius": "6 um"}}})",
         R"(/stages=[{"name": "driven", "pressure_gradient": "1e5 Pa/m", "duration": "1 s", "start": "developed"}])",
-        "/output={}", R"(/cells=[{"type": "capsule", "at": ["0.6 um", "6.3 um", "7.2 um"]}])"}}};
+        "/output={}", R"(/cells=[{"type": "capsule", "at": ["0.6 um", "6.3 um", "8.7 um"]}])"}}};
 }
 
 inline const plugin::Catalog& catalog() {

@@ -42,7 +42,8 @@ InteractionForces::InteractionForces(Membranes& membranes, std::vector<Interacti
       cutoffs_(cutoffs_of(interactions_)),
       contacts_(membranes, pair_cutoffs(membranes, interactions_, cutoffs_), domain),
       scratch_(membranes.cells.size()),
-      reactions_(membranes.cells.size()) {
+      reactions_(membranes.cells.size()),
+      across_images_(membranes.cells.size()) {
   for (std::size_t p = 0; p < interactions_.size(); ++p) {
     const Potential& potential = interactions_[p].potential;
     variables_.push_back(keep_state(potential, p, membranes.contacts, membranes.cells.size()));
@@ -205,6 +206,7 @@ void InteractionForces::act(int cell, Membranes& membranes, const Scratch& scrat
   const double *force = scratch.force.data(), *along = list.along.data();
   double *force_x = membranes.force_x.data(), *force_y = membranes.force_y.data();
   const int *node = list.node.data(), *segment = list.segment.data();
+  across_images_[cell] = 0;
   const double *direction_x = list.direction_x.data(), *direction_y = list.direction_y.data();
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const NeighbourList::Pair& pair = pairs[p];
@@ -228,6 +230,8 @@ void InteractionForces::act(int cell, Membranes& membranes, const Scratch& scrat
       act_at(i + half);
     }
     for (int i = middle + half; i < range.end; ++i) act_at(i);
+    for (int i = range.begin; i < range.end && pair.shift.y != 0; ++i)
+      across_images_[cell] += pair.shift.y * 0.5 * weight[node[i] - own.first] * force[i] * direction_x[i];
   }
 }
 

@@ -62,6 +62,10 @@ class InteractionForces {
     }
   }
 
+  /// After phase 1: over a cell's contacts the sum of the force along x on its nodes, times the periods along y by which the
+  /// other's image is shifted.
+  [[nodiscard]] double force_across_images(int cell) const { return across_images_[cell]; }
+
   /// Energy of the contacts found by the last run() in their present state, of all ranks' cells. Not a pass.
   [[nodiscard]] double energy(const Membranes& membranes, const Ranks<2>& ranks = {}) const;
   /// A potential that acts but tells no energy; empty: none.
@@ -123,6 +127,7 @@ class InteractionForces {
   Contacts contacts_;
   WorkerScratch<Scratch> scratch_;
   std::vector<Reactions> reactions_;                 // of the cells
+  std::vector<double> across_images_;                // of the cells
   std::vector<std::vector<std::size_t>> variables_;  // of the potentials, in ContactMemory::variables
   bool has_state_ = false, needs_velocities_ = false;
 };

@@ -176,7 +176,7 @@ void SurfaceContacts::refresh(Worker worker, const Surfaces& surfaces) {
   const CellNumbers cells = surfaces.known_cells(worker);
   for (const int cell : cells) renewed_[cell] = renew;
   if (!renew) return;
-  const double skin = suitable_skin(surfaces);
+  const double skin = of_all_ ? 1e-6 : suitable_skin(surfaces);  // who looks at all looks once
   // Every worker sorts all triangles: that is quicker than to wait for one who does.
   double largest = cutoffs_.largest();
   for (const auto& own : self_reach_) largest = std::max(largest, own ? own->cutoff() : 0);

@@ -39,7 +39,8 @@ SurfaceInteractions::SurfaceInteractions(Surfaces& surfaces, std::vector<Interac
       contacts_(surfaces, pair_cutoffs(surfaces, interactions_, cutoffs_of(interactions_)), domain,
                 self_cutoffs(surfaces, within_cells)),
       scratch_(surfaces.cells.size()),
-      reactions_(surfaces.cells.size()) {
+      reactions_(surfaces.cells.size()),
+      across_images_(surfaces.cells.size()) {
   for (SelfInteraction& own : within_cells) interactions_.push_back({{own.type, own.type}, std::move(own.potential)});
   for (std::size_t p = 0; p < interactions_.size(); ++p) {
     const SurfaceLaw& law = laws_.emplace_back(interactions_[p].potential, p, surfaces.contacts, surfaces.cells.size());
@@ -120,10 +121,12 @@ bool SurfaceInteractions::acts_at(std::size_t interaction, const SurfaceContact&
 void SurfaceInteractions::act(int cell, Surfaces& surfaces, const Scratch& scratch) {
   const RestSurface& rest = surfaces.type_of(cell);
   const int first = surfaces.cells[cell].first;
+  across_images_[cell] = 0;
   for (std::size_t c = 0; c < scratch.contacts.size(); ++c) {
     const SurfaceContact& contact = scratch.contacts[c];
     if (scratch.result[c] == 0) continue;
     const Vec<3> force = 0.5 * rest.node_area[contact.node - first] * scratch.result[c] * contact.direction;
+    across_images_[cell] += contact.shift.y * force.x();
     surfaces.force_x[contact.node] += force.x();
     surfaces.force_y[contact.node] += force.y();
     surfaces.force_z[contact.node] += force.z();

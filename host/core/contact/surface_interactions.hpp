@@ -44,6 +44,10 @@ class SurfaceInteractions {
   /// After phase 1: what a cell does to others; of another rank's cell that is to be put there before phase 2.
   [[nodiscard]] std::vector<Reaction>& reactions(int cell) { return reactions_[cell]; }
 
+  /// After phase 1: over a cell's contacts the sum of the force along x on its nodes, times the periods along y by which the
+  /// other's image is shifted.
+  [[nodiscard]] double force_across_images(int cell) const { return across_images_[cell]; }
+
   /// Energy of the contacts at the present positions, for which run() has made the lists, in their present state, of all
   /// ranks' cells. Not a pass.
   [[nodiscard]] double energy(const Surfaces& surfaces, const Ranks<3>& ranks = {}) const;
@@ -75,6 +79,7 @@ class SurfaceInteractions {
   SurfaceContacts contacts_;
   WorkerScratch<Scratch> scratch_;
   std::vector<std::vector<Reaction>> reactions_;  // of each cell's contacts, in their order
+  std::vector<double> across_images_;             // of each cell
 };
 
 }  // namespace rouleau::core

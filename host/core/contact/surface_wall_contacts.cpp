@@ -109,9 +109,10 @@ double SurfaceWallContacts::energy(const Surfaces& surfaces, const Ranks<3>& ran
   return sum_over(surfaces, true, ranks, [](const Contacts& contacts, std::size_t i) { return contacts.law[i]; });
 }
 
-double SurfaceWallContacts::net_force(const Surfaces& surfaces, const Ranks<3>& ranks) const {
-  return sum_over(surfaces, false, ranks,
-                  [](const Contacts& contacts, std::size_t i) { return contacts.law[i] * contacts.away_y[i]; });
+double SurfaceWallContacts::net_force(const Surfaces& surfaces, const Ranks<3>& ranks, int axis) const {
+  return sum_over(surfaces, false, ranks, [axis](const Contacts& contacts, std::size_t i) {
+    return contacts.law[i] * (axis == 1 ? contacts.away_y : contacts.away_z)[i];
+  });
 }
 
 std::string SurfaceWallContacts::without_energy() const {

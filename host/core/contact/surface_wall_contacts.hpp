@@ -28,8 +28,8 @@ class SurfaceWallContacts {
 
   /// Energy at the present positions, of all ranks' cells. Not a pass.
   [[nodiscard]] double energy(const Surfaces& surfaces, const Ranks<3>& ranks = {}) const;
-  /// What the walls together do to all cells, along y. Not a pass.
-  [[nodiscard]] double net_force(const Surfaces& surfaces, const Ranks<3>& ranks = {}) const;
+  /// What the walls together do to all cells, along y or z. Not a pass.
+  [[nodiscard]] double net_force(const Surfaces& surfaces, const Ranks<3>& ranks = {}, int axis = 1) const;
   /// A potential that acts but tells no energy; empty: none.
   [[nodiscard]] std::string without_energy() const;
 

@@ -9,6 +9,7 @@
 #include "core/fluid/walls.hpp"
 #include "kernel.hpp"
 #include "spread.hpp"
+#include "wall_share.hpp"
 
 namespace rouleau::core {
 
@@ -214,12 +215,16 @@ struct Coupling<T>::Loops {
   void (*locate)(LocateTask<T>*);
   void (*spread)(const SpreadTask<T>*);
   void (*interpolate)(const InterpolateTask<T>*);
+  StencilAlong (*along)(int base, T p, T q);
 
   template <class Kernel>
   static const Loops* of() {
-    static const Loops loops{Kernel::first, Kernel::points, Dispatch<Locate<T, Kernel>, LocateTask<T>*>::pick(),
+    static const Loops loops{Kernel::first,
+                             Kernel::points,
+                             Dispatch<Locate<T, Kernel>, LocateTask<T>*>::pick(),
                              pick_spread<Kernel, T>(),
-                             Dispatch<Interpolate<T, Kernel>, const InterpolateTask<T>*>::pick()};
+                             Dispatch<Interpolate<T, Kernel>, const InterpolateTask<T>*>::pick(),
+                             &StencilAlong::of<Kernel, T>};
     return &loops;
   }
   static const Loops* of(KernelKind kernel) {
@@ -326,6 +331,19 @@ void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorF
     task.begin = membranes.cells[c].first, task.end = membranes.cells[c].end();
     loops_->interpolate(&task);
   }
+}
+
+template <class T>
+WallForces<2> Coupling<T>::wall_share(const Membranes& membranes, NodeVectors force, const Ranks<2>& ranks) const {
+  WallForceSums<2> sums;
+  for (const int c : membranes.own_cells()) {
+    for (int i = membranes.cells[c].first; i < membranes.cells[c].end(); ++i) {
+      if (row_[i] == outside) continue;
+      add_wall_share<2>({force.x[i], force.y[i]}, {StencilAlong{}, loops_->along(row_[i], p_y_[i], q_y_[i])}, domain_,
+                        nullptr, sums);
+    }
+  }
+  return sums.total(ranks);
 }
 
 template <class T>

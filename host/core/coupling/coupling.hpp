@@ -8,6 +8,7 @@
 #include "base/worker.hpp"
 #include "core/domain/domain.hpp"
 #include "core/fluid/field.hpp"
+#include "core/fluid/walls.hpp"
 #include "core/membrane/membranes.hpp"
 #include "kernel_kind.hpp"
 
@@ -31,6 +32,9 @@ class Coupling {
   /// Pass over cells: sets velocity_x and velocity_y of the nodes whose base node lies in the block, of cells that reach it.
   void interpolate(Worker worker, Membranes& membranes, const VectorField<T, 2>& velocity,
                    Whose whose = Whose::own) const;
+
+  /// What of these forces of this rank's cells acts on walls and not on the fluid, of all ranks together. Not a pass.
+  [[nodiscard]] WallForces<2> wall_share(const Membranes& membranes, NodeVectors force, const Ranks<2>& ranks) const;
 
   /// The node of the lattice below a membrane node: that of the block which computes its velocity.
   [[nodiscard]] std::array<int, 2> base(int node) const { return {column_[node], std::max(row_[node], 0)}; }

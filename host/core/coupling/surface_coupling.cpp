@@ -8,6 +8,7 @@
 #include "core/fluid/walls.hpp"
 #include "kernel.hpp"
 #include "spread.hpp"
+#include "wall_share.hpp"
 
 namespace rouleau::core {
 
@@ -295,12 +296,16 @@ struct SurfaceCoupling<T>::Loops {
   void (*locate)(LocateTask<T>*);
   void (*spread)(const SurfaceSpread<T>*);
   void (*interpolate)(const SurfaceInterpolate<T>*);
+  StencilAlong (*along)(int base, T p, T q);
 
   template <class Kernel>
   static const Loops* of() {
-    static const Loops loops{Kernel::first, Kernel::points, Dispatch<LocateSurface<T, Kernel>, LocateTask<T>*>::pick(),
+    static const Loops loops{Kernel::first,
+                             Kernel::points,
+                             Dispatch<LocateSurface<T, Kernel>, LocateTask<T>*>::pick(),
                              Dispatch<SpreadSurface<T, Kernel>, const SurfaceSpread<T>*>::pick(),
-                             Dispatch<InterpolateSurface<T, Kernel>, const SurfaceInterpolate<T>*>::pick()};
+                             Dispatch<InterpolateSurface<T, Kernel>, const SurfaceInterpolate<T>*>::pick(),
+                             &StencilAlong::of<Kernel, T>};
     return &loops;
   }
   static const Loops* of(KernelKind kernel) {
@@ -386,6 +391,21 @@ void SurfaceCoupling<T>::interpolate(Worker worker, Surfaces& surfaces, const Ve
     task.begin = surfaces.cells[c].first, task.end = surfaces.cells[c].end();
     loops_->interpolate(&task);
   }
+}
+
+template <class T>
+WallForces<3> SurfaceCoupling<T>::wall_share(const Surfaces& surfaces, const std::array<const double*, 3>& force,
+                                             const SolidNodes<3>* solid, const Ranks<3>& ranks) const {
+  WallForceSums<3> sums;
+  for (const int c : surfaces.own_cells()) {
+    for (int i = surfaces.cells[c].first; i < surfaces.cells[c].end(); ++i) {
+      if (base_[2][i] == outside) continue;
+      std::array<StencilAlong, 3> stencil;
+      for (int k = 0; k < 3; ++k) stencil[k] = loops_->along(base_[k][i], p_[k][i], q_[k][i]);
+      add_wall_share<3>({force[0][i], force[1][i], force[2][i]}, stencil, domain_, solid, sums);
+    }
+  }
+  return sums.total(ranks);
 }
 
 template <class T>

@@ -8,6 +8,8 @@
 #include "base/worker.hpp"
 #include "core/domain/domain.hpp"
 #include "core/fluid/field.hpp"
+#include "core/fluid/solid_nodes.hpp"
+#include "core/fluid/walls.hpp"
 #include "core/surface/surfaces.hpp"
 #include "kernel_kind.hpp"
 
@@ -34,6 +36,10 @@ class SurfaceCoupling {
   /// Pass over cells: sets the velocities of the nodes whose base node lies in the block, of cells that reach it.
   void interpolate(Worker worker, Surfaces& surfaces, const VectorField<T, 3>& velocity,
                    Whose whose = Whose::own) const;
+
+  /// What of these forces of this rank's cells acts on walls and not on the fluid, of all ranks together. Not a pass.
+  [[nodiscard]] WallForces<3> wall_share(const Surfaces& surfaces, const std::array<const double*, 3>& force,
+                                         const SolidNodes<3>* solid, const Ranks<3>& ranks) const;
 
   /// The node of the lattice below a node: that of the block which computes its velocity.
   [[nodiscard]] std::array<int, 3> base(int node) const {

@@ -526,30 +526,51 @@ typename Fluid<T, Set>::MassAndSpeed Fluid<T, Set>::mass_and_speed() const {
 }
 
 template <class T, class Set>
-typename Fluid<T, Set>::WallStress Fluid<T, Set>::wall_stress() const {
-  if (!walls_have_acted_ || setting_.solid) return {std::nan(""), std::nan("")};
+auto Fluid<T, Set>::wall_forces() const -> WallForces<dimension> {
+  using Sums = WallForceSums<dimension>;
+  Sums sums;
   // A population that leaves towards the wall and returns gives the wall c_q f_q - c_-q f_-q = c_q (f_q + f_-q); the
   // one that left is the one that came back plus the wall's own momentum: f_q = f_-q + 6 w_q c_q . u_wall.
-  std::vector<ExactSum> sums(2);
-  const auto add = [&](ExactSum& sum, const Row& row, int outward, double speed) {
-    const T* in[velocity_count];
-    lattice_.row_pointers(parity_, row, in);
-    for (int q = 1; q < velocity_count; ++q) {
-      const int cx = Set::velocity[q][0];
-      if (Set::velocity[q][1] != outward || cx == 0) continue;
-      const T* returned = in[Set::opposite[q]];
-      const double moved = 6 * Set::weight[q] * cx * speed;
-      for (int x = 0; x < nx(); ++x) sum.add(cx * (2 * static_cast<double>(returned[x]) + moved));
-    }
-  };
+  const bool planes_are_links = setting_.solid && setting_.solid->interpolated();
   for (int i = 0; i < lattice_.rows(); ++i) {
     const Row row = lattice_.row(i);
-    if (row[0] == 0 && setting_.domain.wall_below(1)) add(sums[0], row, -1, last_walls_.lower);
-    if (row[0] == lattice_.size(1) - 1 && setting_.domain.wall_above(1)) add(sums[1], row, +1, last_walls_.upper);
+    const T* in[velocity_count];
+    lattice_.row_pointers(parity_, row, in);
+    const auto beyond = [&](int axis, int c) {
+      const int place = row[axis - 1] + c;
+      return (place < 0 && setting_.domain.wall_below(axis)) ||
+             (place >= lattice_.size(axis) && setting_.domain.wall_above(axis));
+    };
+    for (int q = 1; q < velocity_count && !planes_are_links; ++q) {
+      const auto& c = Set::velocity[q];
+      const bool y = beyond(1, c[1]);
+      if (!y && !(dimension == 3 && beyond(dimension - 1, c[dimension - 1]))) continue;
+      const typename Sums::Wall wall = !y ? Sums::other : (c[1] < 0 ? Sums::lower : Sums::upper);
+      const double speed = !y ? 0 : (c[1] < 0 ? last_walls_.lower : last_walls_.upper);
+      const T* const returned = in[Set::opposite[q]];
+      const double moved = 6 * Set::weight[q] * c[0] * speed;
+      mask_.for_fluid(i, [&](int begin, int end) {
+        for (int x = begin; x < end; ++x) {
+          const double force = 2 * static_cast<double>(returned[x]) + moved;
+          for (int k = 0; k < dimension; ++k)
+            if (c[k] != 0) sums.add(wall, k, c[k] * force);
+        }
+      });
+    }
+    if constexpr (dimension == 3) {
+      if (!links_) continue;
+      links_->for_links(i, [&](int x, int q, double left, bool) {
+        for (int k = 0; k < dimension; ++k) {
+          if (Set::velocity[q][k] != 0)
+            sums.add(Sums::other, k, -Set::velocity[q][k] * (left + static_cast<double>(in[q][x])));
+        }
+      });
+    }
   }
-  add_up(ranks_, sums);
-  const double nodes = static_cast<double>(setting_.domain.nodes()) / setting_.domain.size[1];
-  return {sums[0].value() / nodes, sums[1].value() / nodes};
+  WallForces<dimension> forces = sums.total(ranks_);
+  if (!walls_have_acted_)
+    forces.lower.fill(std::nan("")), forces.upper.fill(std::nan("")), forces.other.fill(std::nan(""));
+  return forces;
 }
 
 template <class T, class Set>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <type_traits>
@@ -146,7 +147,7 @@ class Fluid {
   /// Mean velocity along x of each row of the lattice (flow_rate.hpp), solid nodes counted as fluid at rest.
   [[nodiscard]] std::vector<double> row_velocities() const;
   /// The same without the half step that the membranes' forces have still to act, and so before these are known; after
-  /// settle(). All of them together have no share in the mean.
+  /// settle(). All of them together have no share in the mean, but for what walls take of it.
   [[nodiscard]] std::vector<double> row_velocities_without_membranes() const;
   /// Sum of density deviations over all nodes.
   [[nodiscard]] double mass() const;
@@ -155,14 +156,20 @@ class Fluid {
     double mass, speed;  ///< not a number if any density or velocity is none
   };
   [[nodiscard]] MassAndSpeed mass_and_speed() const;
-  /// Mean shear stress that the fluid has exerted on the lower and the upper wall across y in the last step, along +x, by momentum
-  /// exchange. NaN
-  /// between the start of a fluid at rest (or taken over) and its first step: walls that have just begun to move have
-  /// exchanged nothing yet. NaN with solid nodes, too, which take the most of it.
+  /// What the fluid has done to the walls in the last step, by momentum exchange. What membranes beside a wall do to it is
+  /// not in it: Solver::wall_forces(). NaN between the start of a fluid at rest (or taken over) and its first step: walls
+  /// that have just begun to move have exchanged nothing yet.
+  [[nodiscard]] WallForces<dimension> wall_forces() const;
+  /// The same as mean shear stresses on the lower and the upper wall across y, along +x; NaN with solid nodes.
   struct WallStress {
     double lower, upper;
   };
-  [[nodiscard]] WallStress wall_stress() const;
+  [[nodiscard]] WallStress wall_stress() const { return mean_wall_stress(wall_forces()); }
+  [[nodiscard]] WallStress mean_wall_stress(const WallForces<dimension>& forces) const {
+    if (setting_.solid) return {std::nan(""), std::nan("")};
+    const double nodes = static_cast<double>(setting_.domain.nodes()) / setting_.domain.size[1];
+    return {forces.lower[0] / nodes, forces.upper[0] / nodes};
+  }
   /// What of the fluid's energy there is and what becomes of it, summed over all nodes; state as in moments().
   struct Energetics {
     double kinetic;                          ///< u^2/2, density 1

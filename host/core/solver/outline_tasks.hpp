@@ -38,6 +38,11 @@ class OutlineTasks {
     coupling_.spread(rows, membranes_, slip_correction_ ? slip_correction_->forces() : membranes_.forces(),
                      fluid_.force());
   }
+  /// Of what is now spread, the share that acts on walls and not on the fluid; of all ranks together.
+  [[nodiscard]] WallForces<2> wall_share() const {
+    return coupling_.wall_share(membranes_, slip_correction_ ? slip_correction_->forces() : membranes_.forces(),
+                                ranks_);
+  }
   /// The frame of the fluid's unsteady term gets the cells' velocity, as far as the walls allow, if the setup wants that.
   void follow(const std::array<double, 3>& velocity);
   /// One worker, between steps, before ranks speak of something else than the next step does, which other workers may have
@@ -82,6 +87,10 @@ class OutlineTasks {
   [[nodiscard]] const ViscosityField<T>& viscosity_field() const { return viscosity_field_; }
   /// Null without such interactions.
   [[nodiscard]] const WallContacts* wall_contacts() const { return wall_contacts_.get(); }
+  /// Where the state may be observed: InteractionForces::force_across_images.
+  [[nodiscard]] double force_across_images(int cell) const {
+    return interaction_forces_ ? interaction_forces_->force_across_images(cell) : 0;
+  }
   /// Calls function(forces) for the kinds of interactions that there are: between cells, with walls, of a cell with itself.
   template <class Function>
   void for_each_interaction(Function function) const {

@@ -1,6 +1,7 @@
 #include "solver.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <stdexcept>
 
 #include "core/fluid/channel_flow.hpp"
@@ -268,6 +269,14 @@ void Solver<T, Set>::keep_mean_velocity() {
   double section = setup_.solid ? static_cast<double>(setup_.solid->fluid_count()) / domain.size[0] : 1;
   for (int k = 1; k < dimension && !setup_.solid; ++k) section *= domain.size[k];
   fluid_.set_drive(setup_.walls, flow_control_->follow(rate / section));
+}
+
+template <class T, class Set>
+typename Fluid<T, Set>::WallStress Solver<T, Set>::wall_stress() const {
+  const WallForces<dimension> forces = wall_forces();
+  if (setup_.tube_radius == 0) return fluid_.mean_wall_stress(forces);
+  const double mean = forces.all(0) / (2 * std::numbers::pi * setup_.tube_radius * setup_.domain.size[0]);
+  return {mean, mean};
 }
 
 template <class T, class Set>

@@ -72,6 +72,14 @@ class Solver {
 
   [[nodiscard]] const Setup& setup() const { return setup_; }
   [[nodiscard]] Fluid<T, Set>& fluid() { return fluid_; }
+  /// Where the state may be observed, on all ranks: what acts on the walls, the fluid in the last step (Fluid::wall_forces)
+  /// and membranes beside them by the forces that they have now; and the shear stresses of that (Fluid::wall_stress).
+  [[nodiscard]] WallForces<dimension> wall_forces() const {
+    WallForces<dimension> forces = fluid_.wall_forces();
+    if (cell_tasks_) forces += cell_tasks_->wall_share();
+    return forces;
+  }
+  [[nodiscard]] typename Fluid<T, Set>::WallStress wall_stress() const;
   [[nodiscard]] const Cells& cells() const { return cells_; }
   /// What is done with the cells; null without any.
   [[nodiscard]] CellTasks* cell_tasks() { return cell_tasks_.get(); }

@@ -47,6 +47,11 @@ class SurfaceTasks {
   void spread(Range rows) {
     coupling_.spread(rows, surfaces_, slip_ ? slip_->forces() : surfaces_.forces(), fluid_.force());
   }
+  /// Of what is now spread, the share that acts on walls and not on the fluid; of all ranks together.
+  [[nodiscard]] WallForces<3> wall_share() const {
+    return coupling_.wall_share(surfaces_, slip_ ? slip_->forces() : surfaces_.forces(), fluid_.setting().solid.get(),
+                                ranks_);
+  }
   /// The fluid's unsteady term has no frame in three dimensions.
   void follow(const std::array<double, 3>&) {}
   /// One worker, between steps, before ranks speak of something else than the next step does, which other workers may have
@@ -90,6 +95,10 @@ class SurfaceTasks {
   [[nodiscard]] bool corrects_motion() const { return slip_ || keeps_volumes_; }
   /// Null without such interactions.
   [[nodiscard]] const SurfaceWallContacts* wall_contacts() const { return wall_contacts_.get(); }
+  /// Where the state may be observed: InteractionForces::force_across_images.
+  [[nodiscard]] double force_across_images(int cell) const {
+    return interactions_ ? interactions_->force_across_images(cell) : 0;
+  }
   /// Calls function(forces) for the kinds of interactions that there are: between and within cells, and with walls.
   template <class Function>
   void for_each_interaction(Function function) const {

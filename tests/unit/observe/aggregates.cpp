@@ -1,13 +1,17 @@
 // Contacts over periodic images, clusters, and when outputs are due.
 #include "observe/aggregates.hpp"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <random>
 
+#include "core/contact/surface_contacts.hpp"
+#include "core/contact/surface_crossing.hpp"
 #include "core/membrane/geometry.hpp"
 #include "plan/output_schedule.hpp"
+#include "shape/surface.hpp"
 #include "unit/periodic_box.hpp"
 
 using namespace rouleau;
@@ -119,6 +123,63 @@ TEST_CASE(
     CHECK(gaps_of(m, domain) == gaps);
   }
   CHECK(gaps_of(circles({}), test::periodic_box(100)).empty());
+}
+
+namespace {
+
+/// Discs, spheres among them, at random places and turns; some touch or overlap.
+Surfaces crowd(int count, const Domain<3>& domain, std::mt19937& random) {
+  Surfaces s;
+  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::biconcave_disc(5, 3))));
+  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(3, {2, 2, 2}))));
+  std::uniform_real_distribution<double> any(-0.5, 1.5);
+  for (int cell = 0; cell < count; ++cell) {
+    const Vec<3> center(any(random) * domain.size[0], any(random) * domain.size[1], any(random) * domain.size[2]);
+    add_cell(s, cell % 2, center, Eigen::Quaterniond::UnitRandom().toRotationMatrix());
+  }
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("smallest gaps of surfaces are those of a search through all contacts within half a period, to the bit") {
+  const unsigned seed = std::random_device{}();
+  INFO("seed " << seed);
+  std::mt19937 random(seed);
+  std::srand(seed);  // of Eigen
+  for (const auto& [domain, count] : {std::pair(Domain<3>({40, 36, 44}, {true, true, true}), 14),
+                                      std::pair(Domain<3>({30, 60, 24}, {true, false, true}), 5),
+                                      std::pair(Domain<3>({14, 13, 12}, {true, true, true}), 1)}) {
+    const Surfaces s = crowd(count, domain, random);
+    double most = domain.period(0) / 2;
+    for (int k = 1; k < 3; ++k) most = domain.periodic[k] ? std::min(most, domain.period(k) / 2) : most;
+    std::vector<double> expected(s.cells.size(), std::numeric_limits<double>::infinity());
+    const SurfaceContacts all = SurfaceContacts::within(most, s, domain);
+    std::vector<SurfaceContact> of_cell;
+    for (int cell = 0; cell < count; ++cell) {
+      all.find(cell, s, of_cell);
+      for (const SurfaceContact& contact : of_cell) {
+        for (const int both : {cell, contact.other}) expected[both] = std::min(expected[both], contact.distance);
+      }
+    }
+    Surroundings<3> around(s);
+    CHECK(smallest_gaps(around, domain) == expected);
+  }
+}
+
+TEST_CASE("the deepest node inside another surface is found, over a border too, and none where none is") {
+  const Domain<3> domain({30, 30, 30}, {true, true, true});
+  for (const double depth : {0.7, 1.6, -0.3}) {
+    Surfaces s;
+    s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(8, {4, 4, 4}))));
+    for (const double x : {2.0, 15.0, 24 + depth}) add_cell(s, 0, {x, 10, 10});  // the last and the first, over x
+    const auto found = find_crossing(s, domain);
+    REQUIRE(found.has_value() == depth > 0);
+    if (!found) continue;
+    CHECK(found->depth == Approx(depth).epsilon(0.03));
+    CHECK((found->cell == 0 && found->other == 2));
+    CHECK(s.x[found->node] == Approx(-2).epsilon(0.02));
+  }
 }
 
 TEST_CASE("an aggregate is a connected chain of contacts, labelled by its smallest cell") {

@@ -81,6 +81,7 @@ std::vector<std::uint64_t> numbers(const observe::Snapshot& s) {
                           s.energy.interaction,
                           s.energy.total,
                           s.energy.viscous_dissipation,
+                          s.energy.wall_power,
                           s.energy.membrane_dissipation};
   for (const observe::CellSnapshot& c : s.cells) {
     all.insert(all.end(),

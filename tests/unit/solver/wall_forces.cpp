@@ -1,0 +1,288 @@
+// What acts on walls, of fluid and membranes together; and that the viscosity by the walls is the one by the particles.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/solver/solver.hpp"
+#include "observe/energy.hpp"
+#include "observe/particle_stress.hpp"
+#include "plan/placed_cells.hpp"
+#include "plan/solver_setup.hpp"
+#include "unit/blocks_fixture.hpp"
+
+using namespace rouleau;
+using namespace rouleau::core;
+using namespace rouleau::test;
+
+namespace {
+
+template <class T, class Set>
+struct Bench {
+  static constexpr int D = Set::dimension;
+  using Cells = typename Solver<T, Set>::Cells;
+  explicit Bench(const Case& c)
+      : scene(plan::read_scene(c.file, c.overrides)), plan(plan::make_plan(scene, catalog())) {
+    cells = plan::make_cells<D>(scene);
+  }
+  void start() {
+    solver = std::make_unique<Solver<T, Set>>(plan::make_solver_setup<D>(plan, 0), cells);
+    solver->start();
+  }
+  /// All populations' momentum.
+  [[nodiscard]] std::array<double, D> momentum() {
+    std::array<double, D> sum{};
+    solver->fluid().settle();
+    std::vector<T> values;
+    for (int q = 0; q < Set::velocity_count; ++q) {
+      solver->fluid().copy_populations(q, values);
+      double all = 0;
+      for (const T value : values) all += static_cast<double>(value);
+      for (int k = 0; k < D; ++k) sum[k] += Set::velocity[q][k] * all;
+    }
+    return sum;
+  }
+  [[nodiscard]] double force(int i, int axis) const {
+    return (axis == 0 ? cells.force_x : axis == 1 ? cells.force_y : cells.force_z)[i];
+  }
+  [[nodiscard]] double particle_stress(bool with_images = true) {
+    const auto across = [this](int c) { return solver->cell_tasks()->force_across_images(c); };
+    return observe::particle_stress(cells, scene, solver->setup().viscosity(), solver->ranks(),
+                                    with_images ? across : observe::ForceAcrossImages{});
+  }
+
+  scene::Scene scene;
+  plan::Plan plan;
+  Cells cells;
+  std::unique_ptr<Solver<T, Set>> solver;
+};
+
+template <class T, class Set>
+void check_balance(const Case& c) {
+  CAPTURE(c.what, sizeof(T));
+  Bench<T, Set> bench(c);
+  bench.start();
+  bench.solver->step(40);
+  double largest_share = 0;
+  std::array<double, Set::dimension> exchanged_before{};
+  for (int step = 0; step < 4; ++step) {
+    bench.solver->compute_forces();
+    const auto share = bench.solver->cell_tasks()->wall_share(), now = bench.solver->wall_forces();
+    const auto before = bench.momentum();
+    const FluidSetting<Set::dimension>& setting = bench.solver->fluid().setting();
+    const auto body = setting.body_force;
+    const auto nodes = static_cast<double>(setting.solid ? setting.solid->fluid_count() : setting.domain.nodes());
+    bench.solver->advance();
+    const auto after = bench.momentum();
+    const auto exchanged = bench.solver->fluid().wall_forces();
+    for (int k = 0; k < Set::dimension; ++k) {
+      if (step > 0) CHECK(now.all(k) == Approx(exchanged_before[k] + share.all(k)).margin(1e-15));
+      double given = body[k] * nodes, size = std::abs(given);
+      for (int i = 0; i < bench.cells.node_count(); ++i)
+        given += bench.force(i, k), size += std::abs(bench.force(i, k));
+      CHECK(std::abs(after[k] - before[k] - given + exchanged.all(k) + share.all(k)) <
+            (sizeof(T) == sizeof(double) ? 1e-13 : 3e-6) * (size + std::abs(exchanged.all(k))));
+      largest_share = std::max(largest_share, std::abs(share.all(k)) / size);
+    }
+    for (int k = 0; k < Set::dimension; ++k) exchanged_before[k] = exchanged.all(k);
+  }
+  CHECK(largest_share > 1e-3);  // that a balance without it would miss
+}
+
+const std::string slip = "/numerics/slip_correction=true", area = "/numerics/area_correction=true",
+                  sharp = "/numerics/kernel=sharp6", inertia = "/fluid/inertia=true", none = "/output={}";
+
+/// A red cell along the lower wall, 0.8 spacings off it.
+Case beside_wall(const std::string& what, std::vector<std::string> overrides) {
+  for (const char* all : {R"(/domain/size=["12.544 um", "12.544 um"])", "/domain/nodes=[64, 64]",
+                          R"(/cells=[{"type": "rbc", "at": ["6 um", "1.4 um"]}])", "/numerics/density_factor=500"})
+    overrides.emplace_back(all);
+  return {what, four_cells, overrides};
+}
+/// A capsule 0.5 spacings off walls that are 32 apart.
+Case in_space(const std::string& what, const std::string& y, const std::string& z, const std::string& domain,
+              std::vector<std::string> overrides) {
+  overrides.push_back(R"(/domain={"size": ["12 um", "12 um", "12 um"], "nodes": [32, 32, 32], )" + domain + "}");
+  overrides.push_back(R"(/cells=[{"type": "capsule", "at": ["6 um", ")" + y + R"( um", ")" + z + R"( um"]}])");
+  return {what, ROULEAU_SCENES "/capsule-3d.json", overrides};
+}
+const std::string walls_y = R"("y": {"lower": {"wall": {}}, "upper": {"wall": {}}})",
+                  walls_yz = walls_y + R"(, "z": {"lower": {"wall": {}}, "upper": {"wall": {}}})",
+                  tube = R"("walls": {"tube": {"radius": "6 um"}})",
+                  pushed = R"(/stages=[{"name": "driven", "pressure_gradient": "1e5 Pa/m", "duration": "1 s"}])";
+
+}  // namespace
+
+TEST_CASE("the momentum that the fluid gains is what membranes and a driving force give less what walls get") {
+  const std::string held = R"(/interactions=[{"between": ["rbc", "wall"], "model": "morse", "parameters": {
+    "depth": "1e-7 J/m2"}}])";
+  const std::vector<Case> plane{beside_wall("plain", {shear, contrast}),
+                                beside_wall("sharp", {shear, sharp, inertia}),
+                                beside_wall("corrected", {shear, contrast, slip, area}),
+                                beside_wall("held forces", {shear, semi_implicit}),
+                                beside_wall("held by the wall", {shear, held}),
+                                beside_wall("oscillating walls", {oscillating, none}),
+                                beside_wall("driven", {driven, none})};
+  for (const Case& c : plane) check_balance<double, D2Q9>(c);
+  check_balance<float, D2Q9>(plane.front());
+  const std::string viscous = "/cell_types/capsule/interior_viscosity=\"6 cP\"";
+  const Case duct = in_space("duct", "3.2", "8.8", walls_yz, {pushed, none, slip, area, sharp, viscous});
+  for (const Case& c :
+       {in_space("plane walls", "3.2", "6", walls_y, {viscous}), duct,
+        in_space("sheared duct", "8.8", "3.2", walls_yz, {}), in_space("tube", "8.0", "8.0", tube, {pushed, none}),
+        in_space("tube, corrected", "3.2", "6", tube, {pushed, none, slip, area, sharp, semi_implicit})})
+    check_balance<double, D3Q19>(c);
+  check_balance<float, D3Q19>(duct);
+}
+
+namespace {
+
+/// Means over the second half of some strain, of the walls' stresses and the particles', over viscosity times shear rate.
+struct Means {
+  double lower = 0, upper = 0, fluid = 0, particles = 0;
+};
+template <class Set>
+Means means_of(const Case& c, double strain) {
+  Bench<double, Set> bench(c);
+  bench.start();
+  const plan::StageSetting& stage = bench.plan.stages.front();
+  const long steps = std::lround(strain / std::abs(stage.shear_rate)), looks = 40;
+  const double unit = bench.solver->setup().viscosity() * stage.shear_rate;
+  bench.solver->step(steps / 2);
+  Means means;
+  for (int look = 0; look < looks; ++look) {
+    bench.solver->step(steps / 2 / looks);
+    bench.solver->compute_forces();
+    bench.solver->fluid().settle();
+    const auto all = bench.solver->wall_stress(), fluid = bench.solver->fluid().wall_stress();
+    means.lower += all.lower / unit / looks, means.upper -= all.upper / unit / looks;
+    means.fluid += (fluid.lower - fluid.upper) / 2 / unit / looks;
+    means.particles += 1 / static_cast<double>(looks) + bench.particle_stress() / unit / looks;
+    bench.solver->advance();
+  }
+  return means;
+}
+
+template <class Set>
+void compare_viscosities(const Case& c, double strain, bool beside) {
+  const Means means = means_of<Set>(c, strain);
+  const double walls = (means.lower + means.upper) / 2;
+  std::printf("%s: lower %.5f, upper %.5f, by particles %.5f, fluid alone %.5f\n", c.what.c_str(), means.lower,
+              means.upper, means.particles, means.fluid);
+  CAPTURE(c.what, means.lower, means.upper, means.particles, means.fluid);
+  CHECK(means.lower == Approx(means.upper).epsilon(0.01));
+  CHECK(walls == Approx(means.particles).epsilon(0.01));
+  CHECK(walls > 1.02);
+  if (beside) CHECK(means.fluid < 0.97 * walls);
+}
+
+}  // namespace
+
+TEST_CASE("beside a wall both walls have one stress, and the viscosity by walls is that by particles") {
+  const std::string shear100 =
+      R"(/stages=[{"name": "shear", "shear_rate": "100 1/s", "strain": 5, "start": "developed"}])";
+  compare_viscosities<D2Q9>(beside_wall("2D", {shear100}), 1, true);
+  compare_viscosities<D2Q9>(beside_wall("2D, corrected", {shear100, slip, area, sharp}), 1, true);
+  const auto space = [](std::vector<std::string> more) {
+    more.emplace_back("/numerics/density_factor=1000");
+    return in_space("3D", "3.1", "6", walls_y, more);
+  };
+  compare_viscosities<D3Q19>(space({}), 1, true);
+}
+
+TEST_CASE("in dense suspensions that attract the viscosity by walls is that by particles") {
+  const std::string shear20 =
+      R"(/stages=[{"name": "shear", "shear_rate": "20 1/s", "strain": 5, "start": "developed"}])";
+  Case plane = beside_wall("2D, attracting", {shear20});
+  plane.overrides.emplace_back(
+      R"(/cells=[{"type": "rbc", "at": ["6 um", "1.7 um"]}, {"type": "rbc", "at": ["8 um", "4.8 um"]},
+    {"type": "rbc", "at": ["5 um", "7.9 um"]}, {"type": "rbc", "at": ["11 um", "10.9 um"]}])");
+  plane.overrides.emplace_back("/numerics/density_factor=2500");
+  compare_viscosities<D2Q9>(plane, 1, false);
+  Case space = in_space("3D, attracting", "3.2", "6", walls_y,
+                        {"/numerics/density_factor=1000", R"(/interactions=[{"between": ["capsule", "capsule"],
+    "model": "morse", "parameters": {"depth": "1e-6 J/m2"}}])"});
+  space.overrides.emplace_back(R"(/cells=[{"type": "capsule", "at": ["2 um", "3.4 um", "3 um"]}, {"type": "capsule",
+    "at": ["6 um", "8.6 um", "3 um"]}, {"type": "capsule", "at": ["8.2 um", "3.6 um", "8.8 um"]},
+    {"type": "capsule", "at": ["12 um", "8.4 um", "9.2 um"]}])");
+  compare_viscosities<D3Q19>(space, 1, false);
+}
+
+namespace {
+
+/// Cells sheared by x += strain y, without a fluid: the stress, and the energy, of all.
+template <class Set>
+std::pair<double, double> stress_and_energy(const Case& c, double strain) {
+  Bench<double, Set> bench(c);
+  for (int i = 0; i < bench.cells.node_count(); ++i) bench.cells.x[i] += strain * bench.cells.y[i];
+  bench.start();
+  bench.solver->compute_forces();
+  return {bench.particle_stress() * static_cast<double>(bench.solver->setup().domain.nodes()),
+          observe::cell_energy(*bench.solver).sum};
+}
+template <class Set>
+void compare_with_energy(const Case& c) {
+  CAPTURE(c.what);
+  constexpr double h = 1e-5;
+  const double rise = (stress_and_energy<Set>(c, h).second - stress_and_energy<Set>(c, -h).second) / (2 * h);
+  CHECK(stress_and_energy<Set>(c, 0).first == Approx(rise).epsilon(1e-6));
+}
+const std::string pair_in_plane = R"(/cells=[{"type": "rbc", "at": ["6 um", "4 um"], "angle": "10 deg"},
+  {"type": "rbc", "at": ["7.5 um", "7.2 um"], "angle": "15 deg"}])";
+Case pair_in_space(const std::string& domain) {
+  Case c = in_space("pair in space", "6", "6", domain, {R"(/interactions=[{"between": ["capsule", "capsule"],
+    "model": "morse", "parameters": {"depth": "1e-6 J/m2"}}])"});
+  c.overrides.emplace_back(R"(/cells=[{"type": "capsule", "at": ["5 um", "4 um", "6 um"]},
+    {"type": "capsule", "at": ["9 um", "8.8 um", "6 um"]}])");
+  return c;
+}
+
+/// Stress with a cell moved by a period along y, of two cells, and what it would be without images.
+template <class Set>
+std::pair<double, double> stress_of_moved(const Case& c, double periods) {
+  Bench<double, Set> bench(c);
+  const CellRange& last = bench.cells.cells.back();
+  for (int i = last.first; i < last.end(); ++i) bench.cells.y[i] += periods * bench.scene.domain.nodes[1];
+  bench.start();
+  bench.solver->compute_forces();
+  return {bench.particle_stress(), bench.particle_stress(false)};
+}
+
+}  // namespace
+
+TEST_CASE("the particle stress is what it costs in energy to shear all cells, with what they do to each other") {
+  Case plane = beside_wall("pair in the plane", {shear});
+  plane.overrides.push_back(pair_in_plane);
+  compare_with_energy<D2Q9>(plane);
+  compare_with_energy<D3Q19>(pair_in_space(walls_y));
+}
+
+TEST_CASE("the particle stress is the same through whichever image cells act on each other") {
+  const std::string free = "/domain/y=\"periodic\"";
+  Case plane = beside_wall("pair", {pushed, none, free});
+  plane.overrides.push_back(pair_in_plane);
+  const auto check = []<class Set>(const Case& c, Set) {
+    const auto [here, plain] = stress_of_moved<Set>(c, 0);
+    CHECK(here == Approx(plain));
+    for (const double periods : {1.0, -2.0}) {
+      const auto [moved, without] = stress_of_moved<Set>(c, periods);
+      CHECK(moved == Approx(here).epsilon(1e-9));
+      CHECK(std::abs(without - here) > 0.1 * std::abs(here));
+    }
+  };
+  check(plane, D2Q9{});
+  Case space = pair_in_space("\"y\": \"periodic\"");
+  space.overrides.push_back(pushed), space.overrides.push_back(none);
+  check(space, D3Q19{});
+  // One cell and its own images against two cells and theirs.
+  const auto stack = [&](const char* size, const char* nodes, const char* cells) {
+    Case c = beside_wall("stack", {pushed, none, free});
+    for (const char* more : {size, nodes, cells}) c.overrides.emplace_back(more);
+    return stress_of_moved<D2Q9>(c, 0);
+  };
+  const auto [one, without] = stack(R"(/domain/size=["12.544 um", "3.528 um"])", "/domain/nodes=[64, 18]",
+                                    R"(/cells=[{"type": "rbc", "at": ["6 um", "2 um"], "angle": "4 deg"}])");
+  const auto two = stack(R"(/domain/size=["12.544 um", "7.056 um"])", "/domain/nodes=[64, 36]",
+                         R"(/cells=[{"type": "rbc", "at": ["6 um", "1.9 um"], "angle": "4 deg"},
+                                     {"type": "rbc", "at": ["6 um", "5.428 um"], "angle": "4 deg"}])");
+  CHECK(one == Approx(two.first).epsilon(1e-9));
+  CHECK(std::abs(without - one) > 0.1 * std::abs(one));
+}
