@@ -19,6 +19,7 @@
 #include "files/file.hpp"
 #include "files/frames.hpp"
 #include "files/run_directory.hpp"
+#include "json/document.hpp"
 #include "observe/aggregate_words.hpp"
 #include "report/draw/figure.hpp"
 #include "report/draw/flow_reader.hpp"
@@ -27,6 +28,7 @@
 
 namespace {
 
+using nlohmann::literals::operator""_json_pointer;
 using rouleau::Cause;
 using rouleau::Error;
 using rouleau::Place;
@@ -67,7 +69,7 @@ class Run {
       : series_(table(directory)), reader_(directory / "frames.h5"), flow_(directory / "frames.h5") {
     times_ = {series_.numbers("strain"), series_.numbers("time_s")};
     steps_ = series_.numbers("step");
-    sizes_ = aggregate_sizes(directory / "aggregates.csv");
+    if (joins_all(directory / "summary.json")) sizes_ = aggregate_sizes(directory / "aggregates.csv");
     stages_ = series_.texts("stage_name");
     if (series_.has("shear_rate_1_per_s")) shear_rate_ = series_.numbers("shear_rate_1_per_s");
     const auto frames = std::min(series_.rows(), static_cast<std::size_t>(reader_.frames()));  // of a killed run
@@ -142,6 +144,14 @@ class Run {
     const auto sizes = sizes_.find(steps_[output]);
     if (firsts < 3 || sizes == sizes_.end()) return instant;
     return instant + ", " + rouleau::observe::aggregates_in_words(sizes->second);
+  }
+  /// Whether cells that are close are joined, all of them: where not, they are no rouleaux.
+  static bool joins_all(const fs::path& file) {
+    if (!fs::exists(file)) return false;
+    const nlohmann::json summary = rouleau::json::Document::read(file).root();
+    if (summary.value("/contacts/attracting"_json_pointer, nlohmann::json::array()).empty()) return false;
+    const nlohmann::json& history = summary.at("aggregate_history");
+    return std::none_of(history.begin(), history.end(), [](const auto& event) { return event.contains("joined"); });
   }
   /// Number of cells of each aggregate by step: aggregates.csv has a row for every contact.
   static std::map<double, std::vector<std::size_t>> aggregate_sizes(const fs::path& file) {

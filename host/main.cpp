@@ -28,20 +28,19 @@ struct Command {
 
 constexpr std::array commands{
     Command{"run", "SCENE", "simulate a scene", run_command},
-    Command{"plan", "SCENE", "what a run would compute and leave out, and how long it takes, without a step",
-            plan_command},
+    Command{"plan", "SCENE", "what a run would compute, leave out and take", plan_command},
     Command{"plugins", "[ID]", "models that were found, why some were refused; locks", plugins_command},
-    Command{"conform", "MANIFEST...", "whether plugins do what the interface and their manifests say", conform_command},
-    Command{"new", "KIND NAME", "source, manifest and build file of a new model; a scene to begin from", new_command},
+    Command{"conform", "MANIFEST...", "whether plugins do what interface and manifest say", conform_command},
+    Command{"new", "KIND NAME", "a new model's source, or a scene, to begin from", new_command},
     Command{"study", "STUDY", "error against run time over a matrix of settings", study_command},
     Command{"limits", "LIMITS", "where a simulation becomes unstable, and how", limits_command},
     Command{"verify", "DIR", "whether a finished run's files are what it wrote", verify_command},
-    Command{"report", "DIR", "a run's page again, two runs side by side, or frames as pictures", report_command},
+    Command{"report", "DIR", "a run's page again, two runs side by side, or pictures", report_command},
 };
 
 std::string overview() {
   std::string text =
-      "Rouleau simulates deformable red blood cells that attract each other while they flow, in two dimensions and in three.\n\n"
+      "Rouleau simulates deformable red blood cells that attract each other while they flow, in 2D and 3D.\n\n"
       "Usage: rouleau COMMAND ...\n\n";
   for (const Command& command : commands) {
     std::string call = std::string(command.name) + ' ' + command.arguments;
@@ -58,12 +57,12 @@ std::string overview() {
 
 int dispatch(const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
-    std::cerr << overview();
+    std::cerr << reflowed(overview(), text_width());
     return exit_code::bad_input;
   }
   const std::string& word = arguments.front();
   if (word == "--help" || word == "-h") {
-    std::cout << overview();
+    std::cout << reflowed(overview(), text_width());
     return exit_code::done;
   }
   if (word == "--version") {

@@ -170,12 +170,12 @@ std::vector<ErrorBar> error_bars(const std::vector<Quantity>& run, const Compani
   const std::string otherwise = other_end(run, measured);
   const double shape = shape_error(run, companions, measured);
   for (const Quantity& quantity : run) {
-    ErrorBar bar{quantity, {}, 0, {}, quantity.why_not};
+    ErrorBar bar{quantity, {}, 0, {}, {}};
     Values values{quantity.value, {}};
     double uncertainty = quantity.uncertainty;
     for (const Measured& companion : measured) {
       const Quantity* other = find(companion.quantities, quantity.name);
-      if (other == nullptr || !other->why_not.empty()) {
+      if (other == nullptr) {
         values.companions.push_back(std::nan(""));
         if (bar.how.empty() && companion.role != Role::order)
           bar.how = "the companion with " + companion.differs + " has none to compare with";

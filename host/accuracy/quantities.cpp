@@ -10,6 +10,7 @@
 #include "files/csv_reader.hpp"
 #include "json/document.hpp"
 #include "json/json.hpp"
+#include "observe/cell_free_layer.hpp"
 #include "observe/observables.hpp"
 #include "plan/error_model.hpp"
 
@@ -27,7 +28,7 @@ constexpr std::array<std::string_view, 6> no_results{"mach_max",         "area_d
                                                      "area_leakage_max", "kinetic_energy", "total_energy"};
 
 void add(std::vector<Quantity>& all, Quantity quantity) {
-  if (std::isfinite(quantity.value) || !quantity.why_not.empty()) all.push_back(std::move(quantity));
+  if (std::isfinite(quantity.value)) all.push_back(std::move(quantity));
 }
 
 /// Rows of one cell.
@@ -106,7 +107,10 @@ double part_of_cells(std::string_view name, double value, double relative_viscos
   return power && std::isfinite(relative_viscosity) ? value * (1 - 1 / relative_viscosity) : 0;
 }
 
-void add_series(std::vector<Quantity>& all, const files::StoredTable& table, std::size_t rows) {
+/// Whether cells attract each other: aggregates of those that do not are nothing that could have an error.
+bool attracts(const Json& summary) { return !summary.at("contacts").at("attracting").empty(); }
+
+void add_series(std::vector<Quantity>& all, const files::StoredTable& table, std::size_t rows, bool attracting) {
   if (rows == 0) return;
   const double viscosity = table.numbers("relative_viscosity")[rows - 1];
   for (const observe::Observable& observable : observe::table("series").observables) {
@@ -114,18 +118,28 @@ void add_series(std::vector<Quantity>& all, const files::StoredTable& table, std
     const std::string column = observable.column();
     if (!result || observable.has_means || observable.chart.empty() || !table.has(column)) continue;
     const double value = table.numbers(column)[rows - 1];
-    if (observable.name == "aggregate_count")
-      add(all, {.name = "aggregates", .value = value, .nature = Nature::count});
-    else if (value != 0)
+    if (observable.name == "aggregate_count") {
+      if (attracting) add(all, {.name = "aggregates", .value = value, .nature = Nature::count});
+    } else if (value != 0)
       add(all, {.name = column, .value = value, .part_of_cells = part_of_cells(observable.name, value, viscosity)});
   }
 }
 
-void add_means(std::vector<Quantity>& all, const Json& stages) {
+/// Whether a mean of a stage is a result, rather than what says whether another one is.
+bool is_result(const std::string& column, const Json& means, bool attracting) {
+  if (column.starts_with("aggregate_size")) return attracting;
+  if (!column.starts_with("cell_free_layer")) return true;
+  const Json& empty = means.at("cell_free_layer_empty");
+  return column != "cell_free_layer_empty" && empty.is_object() &&
+         empty.at("mean").get<double>() < observe::most_empty_columns;
+}
+
+void add_means(std::vector<Quantity>& all, const Json& stages, bool attracting) {
   std::set<std::string> named;  // by a later stage
   for (auto stage = stages.rbegin(); stage != stages.rend(); ++stage) {
     for (const auto& [column, mean] : stage->at("means").items()) {
       if (!mean.is_object() || !mean.at("mean").is_number()) continue;
+      if (!is_result(column, stage->at("means"), attracting)) continue;
       const double value = mean.at("mean");
       const bool last = named.insert(column).second, viscosity = column == "relative_viscosity";
       add(all, {.name = (last ? "" : stage->at("stage").get<std::string>() + ": ") + column,
@@ -140,13 +154,12 @@ void add_turning(std::vector<Quantity>& all, const Json& stage) {
   const Json& cells = stage.at("rotation");
   if (cells.size() > most_single_cells) return;
   for (const Json& cell : cells) {
+    if (!(cell.value("turns", 0.0) >= 1)) continue;  // a part of a turn has no mean rate
     for (const char* rate : {"tank_treading_rad_per_strain", "tumbling_rad_per_strain"}) {
       if (!cell.contains(rate) || !cell.at(rate).is_number()) continue;
       const double value = cell.at(rate);
       const std::string number = std::to_string(cell.at("cell").get<int>());
-      Quantity quantity{.name = (cells.size() == 1 ? "" : "cell_" + number + "_") + rate, .value = value};
-      if (!(cell.value("turns", 0.0) >= 1)) quantity.why_not = "the outline has not turned once in the stage";
-      add(all, std::move(quantity));
+      add(all, {.name = (cells.size() == 1 ? "" : "cell_" + number + "_") + rate, .value = value});
     }
   }
 }
@@ -219,10 +232,10 @@ std::vector<Quantity> reported_quantities(const std::filesystem::path& run_direc
   if (rows > 0) add_cells(all, read_cells(run_directory / "cells.csv", series.numbers("time_s")[rows - 1]));
   Json stages = summary.at("rheology");
   if (!beyond.empty() && !stages.empty() && stages.back().at("stage") == beyond) stages.erase(stages.size() - 1);
-  add_means(all, stages);
+  add_means(all, stages, attracts(summary));
   if (!stages.empty()) add_turning(all, stages.back());
   add_partings(all, stages, rows > 0 ? series.numbers("strain")[rows - 1] : 0);
-  add_series(all, series, rows);
+  add_series(all, series, rows, attracts(summary));
   return all;
 }
 

@@ -23,7 +23,6 @@ struct Quantity {
   bool principal = false;    ///< said on the terminal
   bool moment = false;       ///< the strain or time at which something happens
   double least_whole = 0;    ///< smaller values have their relative errors over this: strains before plan::first_events
-  std::string why_not = {};  ///< why there can be no bar; empty: there can
 };
 
 /// Of a run that has completed:

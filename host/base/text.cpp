@@ -159,6 +159,74 @@ std::string time_in_words(double seconds) {
   return seconds < 7200 ? rounded(seconds / 60, 2) + " min" : rounded(seconds / 3600, 2) + " h";
 }
 
+namespace {
+
+/// Characters, not bytes: 10xxxxxx continue one.
+std::size_t length_of(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0U) != 0x80U; }));
+}
+
+/// Where a line goes on that is too long: below its last column, if that leaves room, or a little further in.
+std::size_t hanging_indent(std::string_view line, std::size_t width) {
+  const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
+  std::size_t column = begin + 2;
+  for (std::size_t gap = line.find("  ", begin); gap != std::string_view::npos; gap = line.find("  ", gap + 1)) {
+    const std::size_t next = line.find_first_not_of(' ', gap);
+    if (next != std::string_view::npos && length_of(line.substr(0, next)) <= width * 3 / 5)
+      column = length_of(line.substr(0, next));
+  }
+  return column;
+}
+
+std::string folded_line(std::string_view line, std::size_t width) {
+  if (length_of(line) <= width) return std::string(line);
+  const std::size_t indent = hanging_indent(line, width);
+  std::string text, row;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t word = std::min(line.find_first_not_of(' ', at), line.size());
+    const std::size_t end = std::min(line.find(' ', word), line.size());
+    const std::string_view piece = line.substr(at, end - at);
+    if (row.find_first_not_of(' ') != std::string::npos && length_of(row) + length_of(piece) > width) {
+      text += row + '\n';
+      row = std::string(indent, ' ') + std::string(line.substr(word, end - word));
+    } else {
+      row += piece;
+    }
+    at = end;
+  }
+  return text + row;
+}
+
+}  // namespace
+
+std::string folded(std::string_view text, std::size_t width) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    result += folded_line(text.substr(at, end - at), width);
+    if (end < text.size()) result += '\n';
+    at = end + 1;
+  }
+  return result;
+}
+
+std::string reflowed(std::string_view text, std::size_t width) {
+  std::string joined(text);
+  const auto in_paragraph = [&](std::size_t at) {
+    return at < joined.size() && joined[at] != ' ' && joined[at] != '\n';
+  };
+  std::size_t line = 0;  // where the present one begins
+  for (std::size_t end = joined.find('\n'); end != std::string::npos; end = joined.find('\n', end + 1)) {
+    if (in_paragraph(line) && in_paragraph(end + 1)) {
+      joined[end] = ' ';
+    } else {
+      line = end + 1;
+    }
+  }
+  return folded(joined, width);
+}
+
 std::string indented(std::string problem) {
   for (auto at = problem.find('\n'); at != std::string::npos; at = problem.find('\n', at + 1)) {
     problem.insert(at + 1, "  ");

@@ -42,6 +42,13 @@ std::string rounded(double value, int digits);
 /// "6.4 s", "42 s", "3.1 min", "22 h".
 std::string time_in_words(double seconds);
 
+/// Lines of more than `width` characters are broken at spaces, and go on below the last of their columns (which two
+/// spaces part) or indented by two more. No word is broken.
+std::string folded(std::string_view text, std::size_t width);
+
+/// The same after lines that begin with a letter have been joined to those before them that do: paragraphs.
+std::string reflowed(std::string_view text, std::size_t width);
+
 /// Lines after the first get the indent that Error gives the first.
 std::string indented(std::string problem);
 

@@ -3,8 +3,10 @@
 #include <iostream>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "command/process/command_line.hpp"
 #include "command/process/interruption.hpp"
+#include "command/process/terminal.hpp"
 #include "commands.hpp"
 #include "stability/limits_files.hpp"
 #include "stability/limits_run.hpp"
@@ -47,12 +49,11 @@ int limits_command(const std::vector<std::string>& arguments) {
   if (!parse_command_line("limits", limits_help, arguments, description, positional)) return 0;
 
   const stability::LimitsFile limits = stability::read_limits(file);
-  chosen.directory =
-      out.empty() ? std::filesystem::path("runs") / std::filesystem::path(file).stem() : std::filesystem::path(out);
+  chosen.directory = out.empty() ? directory_for(file) : std::filesystem::path(out);
   chosen.interrupted = &listen_for_interruption(TimeLimit(max_time));
   stability::LimitsRun run(limits, chosen);
   const bool ended = run.run();
-  std::cout << stability::limits_text(stability::limits_json(run.state()))
+  std::cout << folded(stability::limits_text(stability::limits_json(run.state())), text_width())
             << (chosen.directory / "limits.html").string() << "\n";
   if (!ended) {
     std::cerr << "ended by " << interruption_cause() << "; the same command goes on\n";

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <regex>
 
 #include "base/installation.hpp"
@@ -24,23 +25,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* new_help = R"(usage: rouleau new KIND NAME [TEMPLATE] [options]
+constexpr const char* new_help = R"(usage: rouleau new KIND NAME [options]
+       rouleau new scene [TEMPLATE] [--name NAME] [options]
 
 Makes a folder with the source, the manifest and the CMakeLists.txt of a new model: a small one that works and passes its
 conformance tests as it is, to be changed into yours. Prints the commands that build, test and use it.
 KIND is collision, membrane or interaction. NAME is the model's id, a reverse domain name such as org.example.yukawa, or
 a plain name; folder and files have the name of its last part. Nothing is ever overwritten.
 
-With the KIND scene: writes NAME.json, a scene that runs as it is, with notes on what to change. TEMPLATE is
+With the KIND scene: writes a scene that runs as it is, TEMPLATE.json or NAME.json. A word that is no template's is the
+name of a scene like demo. TEMPLATE is, in two dimensions,
   demo           two red cells gather and are sheared (what is taken when left out)
   channel        red cells in a channel that a pressure gradient drives
   suspension     red cells packed at random between walls that shear them
-  suspension-3d  the same in three dimensions
   capsule        one circular capsule in shear flow
+and in three
+  red-cell-3d    a red cell in shear flow
+  doublet-3d     two red cells that stick together and are sheared
+  suspension-3d  red cells packed at random between walls that shear them
+  capsule-3d     one spherical capsule in shear flow
+  tube-3d        plasma in a tube, without cells
 
 Example:
   rouleau new interaction org.example.yukawa
-  rouleau new scene first channel
+  rouleau new scene suspension-3d
+  rouleau new scene channel --name first
 )";
 
 struct Template {
@@ -175,32 +184,38 @@ void print_next_steps(const fs::path& folder, const Template& model, const Name&
 
 int new_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
-  std::string kind, id, scene_template, directory = ".";
+  std::string kind, second, name, directory = ".";
+  std::optional<std::string> id;
   options::options_description description("options");
   options::positional_options_description positional;
   description.add_options()("kind", options::value(&kind)->required(),
                             "KIND (collision, membrane, interaction or scene)");
-  description.add_options()("name", options::value(&id)->required(), "NAME");
-  description.add_options()("template", options::value(&scene_template),
-                            "TEMPLATE (demo, channel, suspension, suspension-3d or capsule)");
+  description.add_options()("id", options::value<std::string>()->notifier([&](const std::string& word) { id = word; }),
+                            "NAME, or TEMPLATE of a scene");
+  description.add_options()("second", options::value(&second), "TEMPLATE of a scene whose name stands before it");
+  description.add_options()("name", options::value(&name)->value_name("NAME")->notifier(not_empty("--name")),
+                            "of a scene: its file's, without the ending");
   description.add_options()("dir", options::value(&directory)->value_name("DIR")->notifier(not_empty("--dir")),
                             "make folder or scene in this folder instead of the working directory");
-  positional.add("kind", 1).add("name", 1).add("template", 1);
+  positional.add("kind", 1).add("id", 1).add("second", 1);
   if (!parse_command_line("new", new_help, arguments, description, positional)) return 0;
 
   if (kind == "scene") {
-    new_scene(directory, id, scene_template.empty() ? "demo" : scene_template);
+    const SceneWords words = scene_words(id, second, name);
+    new_scene(directory, words.name, words.from);
     return exit_code::done;
   }
   const Template& model = template_of(kind);
-  if (!scene_template.empty()) {
-    throw Error(Cause::bad_input, "rouleau new " + kind + " NAME: a template, here " + in_quotes(scene_template) +
-                                      ", is for scenes only: rouleau new scene NAME [TEMPLATE]");
+  if (!id) throw Error(Cause::bad_input, "a NAME is missing", {"rouleau new --help lists the options"});
+  if (!second.empty() || !name.empty()) {
+    throw Error(Cause::bad_input, "rouleau new " + kind + " NAME: a template or --name, here " +
+                                      in_quotes(second.empty() ? name : second) +
+                                      ", is for scenes only: rouleau new scene [TEMPLATE] [--name NAME]");
   }
-  const Name name = checked_name(id);
-  const fs::path folder = (fs::path(directory) / name.file).lexically_normal();
-  make_folder(folder, model, name);
-  print_next_steps(folder, model, name);
+  const Name named = checked_name(*id);
+  const fs::path folder = (fs::path(directory) / named.file).lexically_normal();
+  make_folder(folder, model, named);
+  print_next_steps(folder, model, named);
   return exit_code::done;
 }
 

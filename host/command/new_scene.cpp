@@ -1,6 +1,8 @@
 #include "new_scene.hpp"
 
+#include <algorithm>
 #include <array>
+#include <exception>
 #include <iostream>
 #include <regex>
 #include <string_view>
@@ -9,6 +11,7 @@
 #include "base/text.hpp"
 #include "command/process/command_line.hpp"
 #include "files/file.hpp"
+#include "scene_options.hpp"
 #include "templates.hpp"
 
 namespace rouleau::command {
@@ -28,7 +31,16 @@ const std::array scene_templates{
     SceneTemplate{"suspension", suspension_scene},
     SceneTemplate{"suspension-3d", suspension_3d_scene},
     SceneTemplate{"capsule", capsule_scene},
+    SceneTemplate{"capsule-3d", capsule_3d_scene},
+    SceneTemplate{"red-cell-3d", red_cell_3d_scene},
+    SceneTemplate{"doublet-3d", doublet_3d_scene},
+    SceneTemplate{"tube-3d", tube_3d_scene},
 };
+
+bool is_template(const std::string& name) {
+  return std::any_of(scene_templates.begin(), scene_templates.end(),
+                     [&](const SceneTemplate& entry) { return name == entry.name; });
+}
 
 std::string_view text_of(const std::string& name) {
   std::vector<std::string> names;
@@ -55,6 +67,40 @@ fs::path file_of(const fs::path& folder, std::string name) {
 
 }  // namespace
 
+namespace {
+
+/// "three dimensions, 14 cells, about 3 min on one core": of the time nothing where models are missing.
+std::string about(const fs::path& file) {
+  SceneOptions options;
+  options.scene = file.string();
+  try {
+    const PlannedScene planned(options);
+    const std::size_t cells = planned.plan.scene->cells.size();
+    return std::string(planned.plan.scene->domain.depth ? "three" : "two") + " dimensions, " +
+           (cells == 0 ? "no" : std::to_string(cells)) + (cells == 1 ? " cell" : " cells") + ", about " +
+           time_in_words(planned.report.estimate.wall_s) + " on one core";
+  } catch (const std::exception&) {
+    return "not planned, because a model is missing here";
+  }
+}
+
+}  // namespace
+
+SceneWords scene_words(const std::optional<std::string>& first, const std::string& second, const std::string& name) {
+  const std::string word = first.value_or("demo");
+  if (!name.empty()) {
+    if (!second.empty())
+      throw Error(Cause::bad_input, "rouleau new scene: " + in_quotes(second) + " is one word too many beside --name");
+    return {name, word};
+  }
+  if (second.empty()) return is_template(word) ? SceneWords{word, word} : SceneWords{word, "demo"};
+  if (is_template(word) && !is_template(second)) return {second, word};
+  if (is_template(word) && word != second)
+    throw Error(Cause::bad_input, "rouleau new scene: both " + in_quotes(word) + " and " + in_quotes(second) +
+                                      " are templates\n  write: rouleau new scene " + second + " --name " + word);
+  return {word, second};
+}
+
 void new_scene(const fs::path& folder, const std::string& name, const std::string& template_name) {
   const std::string_view text = text_of(template_name);
   const fs::path file = file_of(folder, name);
@@ -65,7 +111,11 @@ void new_scene(const fs::path& folder, const std::string& name, const std::strin
   }
   files::write_file(file, std::string(text));
   const std::string scene = in_shell(file.string());
-  std::cout << "Made " << file.string() << ": a scene that runs as it is, with notes on what to change.\nNext:\n"
+  std::cout << "Made " << file.string() << " from the template " << template_name << ": " << about(file)
+            << ". It runs as it is.\n";
+  if (file.stem().string().ends_with("-3d") && !std::string_view(template_name).ends_with("-3d"))
+    std::cout << "Its name ends in -3d, but it has two dimensions: rouleau new --help lists the templates in three.\n";
+  std::cout << "Next:\n"
             << "  rouleau plan " << scene << "\n  rouleau run " << scene << " --out "
             << in_shell("runs/" + file.stem().string()) << '\n';
 }

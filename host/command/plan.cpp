@@ -3,7 +3,9 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "command/process/command_line.hpp"
+#include "command/process/terminal.hpp"
 #include "commands.hpp"
 #include "plan/plan_report.hpp"
 #include "plan/ranks/blocks.hpp"
@@ -142,7 +144,7 @@ int plan_command(const std::vector<std::string>& arguments) {
     // Names of folders need not be UTF-8.
     std::cout << object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
   } else {
-    std::cout << plan::to_text(planned.plan, planned.report) << (ranks ? ranks->text() : "");
+    std::cout << folded(plan::to_text(planned.plan, planned.report) + (ranks ? ranks->text() : ""), text_width());
   }
   std::cout << std::flush;
   // What a run here would be refused for is; of several ranks nobody knows here what memory their machines have.

@@ -5,6 +5,7 @@
 
 #include "base/text.hpp"
 #include "command/process/command_line.hpp"
+#include "command/process/terminal.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
 #include "lock_scene.hpp"
@@ -173,15 +174,17 @@ Json list(const plugin::Catalog& catalog, const std::vector<std::filesystem::pat
   return {{"plugins", plugins}, {"refused", refused}, {"folders", folders}};
 }
 
-void print(const plugin::Catalog& catalog, const std::vector<std::filesystem::path>& named) {
+void print(const plugin::Catalog& catalog, const std::vector<std::filesystem::path>& named, bool paths) {
   for (const plugin::ModelKind kind :
        {plugin::ModelKind::collision, plugin::ModelKind::membrane, plugin::ModelKind::interaction}) {
     const auto ids = catalog.ids(kind);
     std::cout << plugin::to_string(kind) << (ids.empty() ? ": none\n" : "\n");
     for (const std::string& id : ids) {
       const plugin::Manifest& manifest = catalog.find(kind, id, {});
-      std::cout << "  " << id << ' ' << manifest.version << "  " << printable(manifest.title) << "\n      "
-                << manifest.file.string() << '\n';
+      std::string name = id + ' ' + manifest.version;
+      name.resize(std::max<std::size_t>(name.size(), 24), ' ');
+      std::cout << folded("  " + name + "  " + printable(manifest.title), text_width()) << '\n';
+      if (paths) std::cout << "      " << manifest.file.string() << '\n';
     }
   }
   if (!catalog.refused().empty()) std::cout << "refused\n";
@@ -229,12 +232,13 @@ int plugins_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
   std::string id, scene, out, install, index;
   std::vector<std::string> plugin_dirs;
-  bool as_json = false, overwrite = false;
+  bool as_json = false, overwrite = false, paths = false;
   options::options_description description("options");
   options::positional_options_description positional;
   description.add_options()("id", options::value(&id), "a model; without it all are listed");
   description.add_options()("plugin-dir", options::value(&plugin_dirs)->composing()->value_name("DIR"),
                             "search this folder for plugins first (repeatable)");
+  description.add_options()("paths", options::bool_switch(&paths), "also the manifest's path of each model");
   description.add_options()("json", options::bool_switch(&as_json), "print JSON for programs");
   description.add_options()("lock", options::value(&scene)->value_name("SCENE"), "write the lock of this scene")(
       "out", options::value(&out)->value_name("FILE")->notifier(not_empty("--out")), "with --lock: write it there");
@@ -276,7 +280,7 @@ int plugins_command(const std::vector<std::string>& arguments) {
       // Names of folders need not be UTF-8.
       std::cout << list(catalog, named, units).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
     } else {
-      print(catalog, named);
+      print(catalog, named, paths);
     }
     return exit_code::done;
   }

@@ -197,10 +197,8 @@ int lead(const Request& request, const PlannedScene& planned, const TimeLimit& l
   const auto& [scene, numerics_choice] = read;
   const plan::PlanReport& report = planned.report;
   const Crew* const crew = Crew::present();
-  const std::filesystem::path named = std::filesystem::path("runs") / std::filesystem::path(scene_options.scene).stem();
-  const std::filesystem::path folder = !out.empty()          ? std::filesystem::path(out)
-                                       : overwrite || resume ? named
-                                                             : files::unused_directory(named);
+  const std::filesystem::path named = out.empty() ? directory_for(scene_options.scene) : std::filesystem::path(out);
+  const std::filesystem::path folder = !out.empty() || overwrite || resume ? named : files::unused_directory(named);
   const std::string again = (crew != nullptr ? crew->start() : "") + "rouleau run " + scene_options.in_shell() +
                             " --out " + in_shell(folder.string()) + " --resume";
   const files::FormerRun former = resume      ? files::FormerRun::resume

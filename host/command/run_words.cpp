@@ -32,6 +32,7 @@ using Members = std::vector<int>;
 struct Event {
   double strain, time;
   std::vector<Members> aggregates;
+  std::vector<Members> met_images;  ///< pairs that left each other and met by another image
   [[nodiscard]] const Members& largest() const {
     return *std::max_element(aggregates.begin(), aggregates.end(),
                              [](const Members& a, const Members& b) { return a.size() < b.size(); });
@@ -52,15 +53,42 @@ std::vector<Event> events_of(const Json& history) {
   std::vector<Event> events;
   for (const Json& entry : history) {
     if (entry.at("members").is_null()) continue;  // not kept, of many cells
-    Event event{entry.at("strain"), entry.at("time_s"), entry.at("members")};
+    Event event{entry.at("strain"), entry.at("time_s"), entry.at(entry.contains("joined") ? "joined" : "members"),
+                entry.value("met_images", std::vector<Members>())};
     for (Members& members : event.aggregates) std::sort(members.begin(), members.end());
     if (!event.aggregates.empty()) events.push_back(std::move(event));
   }
   return events;
 }
 
+using At = std::vector<Event>::const_iterator;
+
+/// What a rouleau that is whole at the end went through since it formed.
+std::string whole_in_words(At formed, At end, const Members& members) {
+  const auto apart = [&](const Event& e) { return !e.holds(members); };
+  const auto met = [&](const Event& e) {
+    return std::find(e.met_images.begin(), e.met_images.end(), members) != e.met_images.end();
+  };
+  const At broke = std::find_if(formed + 1, end, apart), image = std::find_if(formed + 1, end, met);
+  if (broke == end && image == end) return "; still whole at the end";
+  if (image != end && image <= broke)
+    return "; parted before " + moment(*image) + ", where it met an image of itself: the box is too short";
+  At again = end;
+  while (!apart(*(again - 1))) --again;
+  return "; broke at " + moment(*broke) + "; whole again from " + moment(*again) +
+         (image != end ? " by an image of itself: the box is too short" : "");
+}
+
+/// How many cells were close, where nothing joins them.
+std::string closeness_in_words(std::size_t cells, std::size_t most, double gap_m) {
+  const std::string gap = number(gap_m * 1e6, 3) + " um";
+  if (most < 2) return "no two cells came closer than " + gap;
+  return "at most " + std::to_string(most) + " of " + std::to_string(cells) + " cells were close, with gaps below " +
+         gap + "; nothing attracts them to each other";
+}
+
 /// When the largest aggregate formed and broke for good, and how the cells ended; empty for fewer than two cells.
-std::string aggregation_in_words(const std::vector<Event>& events) {
+std::string aggregation_in_words(const std::vector<Event>& events, const Json& contacts) {
   if (events.empty()) return {};
   const Event& last = events.back();
   std::size_t cells = 0;
@@ -71,10 +99,11 @@ std::string aggregation_in_words(const std::vector<Event>& events) {
     return a.largest().size() < b.largest().size();
   });
   const Members members = formed->largest();
-  if (members.size() < 2) return "the cells never touch: all " + std::to_string(cells) + " stay single";
+  if (contacts.at("attracting").empty()) return closeness_in_words(cells, members.size(), contacts.at("close_below_m"));
+  if (members.size() < 2) return "the cells never join: all " + std::to_string(cells) + " stay single";
   std::string words = "rouleau of " + std::to_string(members.size()) +
                       (formed == events.begin() ? " from the start" : " at " + moment(*formed));
-  if (last.holds(members)) return words + "; still whole at the end";
+  if (last.holds(members)) return words + whole_in_words(formed, events.end(), members);
 
   const auto broken = std::find_if(events.rbegin(), events.rend(), [&](const Event& e) { return e.holds(members); });
   words += "; broke at " + moment(*broken.base());
@@ -88,8 +117,8 @@ std::string aggregation_in_words(const std::vector<Event>& events) {
   return words + "; all single from " + moment(*alone.base());
 }
 
-/// Of the last stage that has one: mean and standard deviation over the outputs of the stage's second half, and whether
-/// it still changes there.
+/// Of the last stage that has one, over its second half, and whether it still changes there. Without an error bar three
+/// digits mean something.
 std::string viscosity_in_words(const Json& summary) {
   const bool has_bar = summary.contains("error_bars") && summary.at("error_bars").contains("relative_viscosity");
   const Json& stages = summary.at("rheology");
@@ -103,9 +132,9 @@ std::string viscosity_in_words(const Json& summary) {
     const std::string changes = trend.is_string() ? "still " + trend.get<std::string>() : "";
     if (has_bar) return changes.empty() ? "" : "relative viscosity " + changes + half;
     const Json& deviation = viscosity.at("deviation");  // null where a single output has a value
-    return "relative viscosity " + number(viscosity.at("mean"), 4) +
-           (deviation.is_number() ? ", standard deviation " + number(deviation, 2) : "") +
-           (changes.empty() ? "" : ", " + changes) + half;
+    if (!deviation.is_number()) return {};              // a single output is the value of an instant
+    return "relative viscosity " + number(viscosity.at("mean"), 3) + (changes.empty() ? "" : ", " + changes) +
+           ", without an error bar (--error-bar); its outputs have a standard deviation of " + number(deviation, 2) + half;
   }
   return {};
 }
@@ -142,7 +171,8 @@ std::vector<std::string> closing(const Json& summary) {
   std::vector<std::string> lines{ended};
 
   const std::vector<Event> events = events_of(summary.at("aggregate_history"));
-  if (const std::string words = aggregation_in_words(events); !words.empty()) lines.push_back(words);
+  if (const std::string words = aggregation_in_words(events, summary.at("contacts")); !words.empty())
+    lines.push_back(words);
   std::string physics = viscosity_in_words(summary);
   const Json& drift = summary.at("conservation").at("area_drift_max");
   if (!events.empty() && drift.is_number())

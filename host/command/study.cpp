@@ -5,6 +5,7 @@
 #include "base/text.hpp"
 #include "command/process/command_line.hpp"
 #include "command/process/interruption.hpp"
+#include "command/process/terminal.hpp"
 #include "commands.hpp"
 #include "study/study_files.hpp"
 #include "study/study_run.hpp"
@@ -34,16 +35,26 @@ Exit codes: 0 done (also where points failed), 1 a repeated run gave other resul
 /// What was left out, what was found; false where a repeated run gave other results.
 bool tell_end(const study::StudyState& state) {
   bool same = true;
+  std::vector<std::string> left_out;
   for (const study::MatrixPoint& point : state.points) {
     const std::string name = trial::name_of(state.study->axes, point.point);
-    if (!point.record) std::cerr << "left out: " << name << ", " << point.left_out << "\n";
+    if (!point.record) left_out.push_back(name + ", " + point.left_out);
     if (!point.record || point.record->difference.empty()) continue;
     std::cerr << "not deterministic: " << name << ", " << point.record->difference << "\n";
     same = false;
   }
+  constexpr std::size_t few = 3;
+  if (left_out.size() > few) {
+    std::cerr << "left out: " << left_out.size() << " of " << state.points.size()
+              << " points, each with its reason in study.html; the first: " << left_out.front() << "\n";
+  } else {
+    for (const std::string& point : left_out) std::cerr << "left out: " << point << "\n";
+  }
   const nlohmann::json study = study::study_json(state);
-  for (const auto& sentence : study["sentences"]) std::cout << sentence["text"].get<std::string>() << "\n";
-  if (study["target"].is_object()) std::cout << study["target"]["sentence"].get<std::string>() << "\n";
+  std::string said;
+  for (const auto& sentence : study["sentences"]) said += sentence["text"].get<std::string>() + "\n";
+  if (study["target"].is_object()) said += study["target"]["sentence"].get<std::string>() + "\n";
+  std::cout << folded(said, text_width());
   return same;
 }
 
@@ -75,8 +86,7 @@ int study_command(const std::vector<std::string>& arguments) {
   if (repeats > 0) study.repeats = repeats;
   if (!budget.empty()) chosen.budget_s = seconds_in("--budget", budget);
   if (!target.empty()) chosen.target = study::read_target(target, study.quantities);
-  const std::filesystem::path named = std::filesystem::path("runs") / std::filesystem::path(file).stem();
-  chosen.directory = out.empty() ? named : std::filesystem::path(out);
+  chosen.directory = out.empty() ? directory_for(file) : std::filesystem::path(out);
   chosen.interrupted = &listen_for_interruption(TimeLimit(max_time));
 
   study::StudyRun run(study, chosen);

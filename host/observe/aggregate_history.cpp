@@ -2,9 +2,61 @@
 
 #include <algorithm>
 
+#include "aggregates.hpp"
+
 namespace rouleau::observe {
 
-void AggregateHistory::follow(const Snapshot& snapshot) {
+namespace {
+
+constexpr std::size_t most_cells_with_images = 200;  ///< of more, pairs that have met would fill checkpoints
+
+/// Contacts between different cells whose types attract each other.
+std::vector<ContactSnapshot> joining(const Snapshot& snapshot,
+                                     const std::vector<std::array<std::string, 2>>& attracting) {
+  std::vector<ContactSnapshot> joins;
+  for (const ContactSnapshot& contact : snapshot.contacts) {
+    const std::string &a = snapshot.cells[contact.cell_a].type, &b = snapshot.cells[contact.cell_b].type;
+    const auto attracts = [&](const auto& pair) {
+      return (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
+    };
+    if (contact.cell_a != contact.cell_b && std::any_of(attracting.begin(), attracting.end(), attracts))
+      joins.push_back(contact);
+  }
+  return joins;
+}
+
+/// Cells that hang together by these contacts, each group and all groups by their smallest cell.
+std::vector<std::vector<int>> groups_by(const std::vector<ContactSnapshot>& contacts, std::size_t cells) {
+  std::vector<CellContact> pairs;
+  pairs.reserve(contacts.size());
+  for (const ContactSnapshot& contact : contacts) pairs.push_back({contact.cell_a, contact.cell_b, {}, 0, 0});
+  const std::vector<int> label = find_aggregates(static_cast<int>(cells), pairs).label;
+  std::map<int, std::vector<int>> groups;
+  for (std::size_t cell = 0; cell < cells; ++cell) groups[label[cell]].push_back(static_cast<int>(cell));
+  std::vector<std::vector<int>> result;
+  for (auto& [first, members] : groups) result.push_back(std::move(members));
+  return result;
+}
+
+}  // namespace
+
+/// Pairs that are close again, but through none of the images through which they were when they were last.
+std::vector<std::array<int, 2>> AggregateHistory::follow_images(const std::vector<ContactSnapshot>& contacts) {
+  std::map<std::pair<int, int>, Images> now;
+  for (const ContactSnapshot& contact : contacts) now[{contact.cell_a, contact.cell_b}].push_back(contact.image);
+  std::vector<std::array<int, 2>> met;
+  for (auto& [pair, images] : now) {
+    Images& before = images_[pair];
+    const bool other = !before.empty() && std::none_of(images.begin(), images.end(), [&](const auto& image) {
+      return std::find(before.begin(), before.end(), image) != before.end();
+    });
+    if (other) met.push_back({pair.first, pair.second});
+    before = std::move(images);
+  }
+  return met;
+}
+
+void AggregateHistory::follow(const Snapshot& snapshot, const std::vector<std::array<std::string, 2>>& attracting) {
   if (snapshot.cells.empty()) return;
   AggregateEvent event{snapshot.strain, snapshot.time, snapshot.aggregate_count, {}, false};
   std::vector<int> slot(snapshot.cells.size(), -1);
@@ -17,16 +69,24 @@ void AggregateHistory::follow(const Snapshot& snapshot) {
     event.members[s].push_back(cell.cell);
     event.through_image = event.through_image || cell.through_image;
   }
-  const bool changed =
-      events_.empty() || events_.back().members != event.members || events_.back().through_image != event.through_image;
+  if (!attracting.empty()) {
+    const std::vector<ContactSnapshot> joins = joining(snapshot, attracting);
+    event.joined = groups_by(joins, snapshot.cells.size());
+    if (event.joined == event.members) event.joined.clear();
+    if (snapshot.cells.size() <= most_cells_with_images) event.met_images = follow_images(joins);
+  }
+  const bool changed = events_.empty() || events_.back().members != event.members ||
+                       events_.back().through_image != event.through_image || events_.back().joined != event.joined ||
+                       !event.met_images.empty();
   if (!changed) return;
-  if (snapshot.cells.size() > most_cells_remembered && events_.size() > 1) events_.back().members = {};
+  if (snapshot.cells.size() > most_cells_remembered && events_.size() > 1)
+    events_.back().members = events_.back().joined = {};
   events_.push_back(std::move(event));
 }
 
 int AggregateHistory::rouleaux() const {
   if (events_.empty()) return 0;
-  const auto& members = events_.back().members;
+  const auto& members = events_.back().together();
   return static_cast<int>(std::count_if(members.begin(), members.end(), [](const auto& m) { return m.size() > 1; }));
 }
 

@@ -14,6 +14,7 @@ namespace {
 void narrow(CellFreeLayer& column, const CellFreeLayer& by) {
   column.lower = std::min(column.lower, by.lower);
   column.upper = std::min(column.upper, by.upper);
+  column.empty = std::min(column.empty, by.empty);
 }
 
 /// The columns across y between the walls of a domain, by the node at which they stand.
@@ -25,14 +26,18 @@ class Columns {
 
   /// A membrane between these heights.
   void meet(int column, double y, double other) {
-    narrow(columns_[static_cast<std::size_t>(column)], {std::min(y, other) + 0.5, upper_wall_ - std::max(y, other)});
+    narrow(columns_[static_cast<std::size_t>(column)], {std::min(y, other) + 0.5, upper_wall_ - std::max(y, other), 0});
   }
   template <int D>
   [[nodiscard]] CellFreeLayer mean(const core::Ranks<D>& ranks) {
     core::join(ranks, columns_, narrow);
     const auto count = static_cast<double>(columns_.size());
-    CellFreeLayer mean{0, 0};
-    for (const CellFreeLayer& column : columns_) mean.lower += column.lower / count, mean.upper += column.upper / count;
+    CellFreeLayer mean{0, 0, 0};
+    for (const CellFreeLayer& column : columns_) {
+      mean.lower += column.lower / count;
+      mean.upper += column.upper / count;
+      mean.empty += column.empty / count;
+    }
     return mean;
   }
 
@@ -146,7 +151,8 @@ CellFreeLayer cell_free_layer_in_tube(const core::Surfaces& surfaces, const core
     for (auto gap = from; gap != to; ++gap) sum += *gap;
     return sum / static_cast<double>(to - from);
   };
-  return {mean(middle, gaps.end()), mean(gaps.begin(), middle)};
+  const auto empty = static_cast<double>(std::count(gaps.begin(), gaps.end(), radius));
+  return {mean(middle, gaps.end()), mean(gaps.begin(), middle), empty / static_cast<double>(gaps.size())};
 }
 
 }  // namespace rouleau::observe

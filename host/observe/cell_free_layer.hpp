@@ -14,7 +14,10 @@ namespace rouleau::observe {
 /// All ranks together, of all cells; the first one gets it.
 struct CellFreeLayer {
   double lower, upper;
+  double empty = 1;  ///< share of the columns without a membrane
 };
+/// With more empty columns than this share the layers' thickness is that of the box.
+inline constexpr double most_empty_columns = 0.05;
 CellFreeLayer cell_free_layer(const core::Membranes& membranes, const core::Domain<2>& domain,
                               const core::Ranks<2>& ranks = {});
 CellFreeLayer cell_free_layer(const core::Surfaces& surfaces, const core::Domain<3>& domain,

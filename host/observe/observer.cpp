@@ -211,8 +211,8 @@ Snapshot Observer::observe(core::Solver<T, Set>& solver, const plan::StageSettin
   snapshot.mach_max = follow_fluid(solver.fluid());
   snapshot.mass_drift = mass_drift_;
   const double viscosity = core::viscosity_of(setting.tau);
-  snapshot.relative_viscosity = snapshot.flow_rate = snapshot.area_leakage_max = std::nan("");
-  snapshot.cell_free_layer_lower = snapshot.cell_free_layer_upper = std::nan("");
+  snapshot.relative_viscosity = snapshot.flow_rate = snapshot.mean_velocity = snapshot.area_leakage_max = std::nan("");
+  snapshot.cell_free_layer_lower = snapshot.cell_free_layer_upper = snapshot.cell_free_layer_empty = std::nan("");
   snapshot.shear_rate = snapshot.wall_stress_lower = snapshot.wall_stress_upper = std::nan("");
   snapshot.pressure_gradient = std::nan("");
   snapshot.aggregate_size_number_mean = snapshot.aggregate_size_weight_mean = std::nan("");
@@ -235,6 +235,8 @@ Snapshot Observer::observe(core::Solver<T, Set>& solver, const plan::StageSettin
       snapshot.relative_viscosity = apparent_viscosity(rate / scene::duct_share(scene_->domain),
                                                        fluid.setting().body_force[0], setting, scene_->domain.nodes[1]);
     snapshot.flow_rate = units.to_si(rate, units::dimension::velocity) * units.length;
+    const scene::Domain& box = scene_->domain;
+    snapshot.mean_velocity = snapshot.flow_rate * box.size.x() * (box.depth ? box.depth->size : 1) / box.content();
   }
   if (setting.stage->pressure_gradient.x() != 0 || setting.stage->mean_velocity ||
       setting.oscillation.body_force_x != 0) {
@@ -254,6 +256,7 @@ Snapshot Observer::observe(core::Solver<T, Set>& solver, const plan::StageSettin
       }();
       snapshot.cell_free_layer_lower = layer.lower * units.length;
       snapshot.cell_free_layer_upper = layer.upper * units.length;
+      snapshot.cell_free_layer_empty = layer.empty;
     }
     // In layers a cell's share in the stress is not a matter of its membrane alone.
     snapshot.particle_stress =

@@ -68,6 +68,22 @@ Json trend_of(const Column& time, const Column& values) {
   return change > 0 ? "rising" : "falling";
 }
 
+constexpr std::size_t parts = 4;
+/// Standard error of a mean in time from `begin` on, from the means of parts of equal length.
+double error_of(const Column& time, const Column& values, double begin, double mean) {
+  const double first = std::max(begin, time.front()), length = time.back() - first;
+  const auto integral_from = [&](std::size_t part) {
+    const double from = first + length * static_cast<double>(part) / parts;
+    return part == parts ? 0 : mean_from(time, values, from) * (time.back() - from);
+  };
+  double squares = 0;
+  for (std::size_t part = 0; part < parts; ++part) {
+    const double off = (integral_from(part) - integral_from(part + 1)) * parts / length - mean;
+    squares += off * off;
+  }
+  return std::sqrt(squares / (parts - 1) / parts);
+}
+
 /// Whether all (or, `any`, some two) of these cells share an aggregate.
 bool together(const std::vector<int>& label, const std::vector<int>& members, bool any) {
   std::set<int> labels;
@@ -131,6 +147,7 @@ Json RheologyHistory::means(const StageHistory& stage) {
     double squares = 0;
     for (const double value : late) squares += (value - *mean) * (value - *mean);
     of_column = {{"mean", *mean},
+                 {"error", late.size() < parts ? Json() : json::number_or_null(error_of(time, values, middle, *mean))},
                  {"deviation", count > 1 ? Json(std::sqrt(squares / (count - 1))) : Json()},
                  {"trend", trend_of(late_time, late)}};
   }

@@ -96,6 +96,19 @@ std::vector<InteractionWell> describe_wells(const Plan& plan) {
   return wells;
 }
 
+std::vector<std::array<std::string, 2>> attracting_types(const Plan& plan, const std::vector<InteractionWell>& wells) {
+  std::vector<std::array<std::string, 2>> pairs;
+  const auto is_cell = [&](const std::string& name) {
+    const auto& types = plan.scene->cell_types;
+    return std::any_of(types.begin(), types.end(), [&](const scene::CellType& type) { return type.name == name; });
+  };
+  for (const InteractionWell& described : wells) {
+    const auto& [a, b] = described.between;
+    if (described.well.attracts() && is_cell(a) && is_cell(b)) pairs.push_back(described.between);
+  }
+  return pairs;
+}
+
 double deepest_well(const Plan& plan, const std::vector<InteractionWell>& wells) {
   double deepest = std::nan("");
   for (const PlannedModel& model : plan.interactions) {

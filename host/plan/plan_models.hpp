@@ -31,6 +31,9 @@ void to_json(nlohmann::json& json, const InteractionWell& described);
 /// One entry for each active interaction without a state, on which a well would depend.
 std::vector<InteractionWell> describe_wells(const Plan& plan);
 
+/// Pairs of cell types between which an interaction has a well: only these are joined where they are close.
+std::vector<std::array<std::string, 2>> attracting_types(const Plan& plan, const std::vector<InteractionWell>& wells);
+
 /// Depth of the deepest of the plan's wells, J/m2; 0 where the interactions attract nowhere, NaN without cells and where
 /// there is no interaction or all that there are have a state.
 double deepest_well(const Plan& plan, const std::vector<InteractionWell>& wells);

@@ -394,6 +394,8 @@ PlanReport make_report(const Plan& plan) {
   report.left_out = omissions(plan);
   report.limits = find_limits(plan);
   report.wells = describe_wells(plan);
+  report.attracting = attracting_types(plan, report.wells);
+  report.close_gap = plan.scene->output.aggregate_gap;
   report.warnings = warnings_of(plan, report.limits, report.wells);
   report.dimensionless = dimensionless_numbers(plan, report.wells);
   report.conversions = conversion_table(plan);

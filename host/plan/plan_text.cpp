@@ -1,4 +1,5 @@
 // A plan for people and for programs.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <sstream>
@@ -100,11 +101,13 @@ std::string to_text(const Plan& plan, const PlanReport& report) {
   for (const std::string& warning : report.warnings) out << "  warning: " << warning << "\n";
 
   if (plan.numerics_choice) write_choice(out, *plan.numerics_choice);
-  out << "\nConversions\n  " << padded("stage", 12) << padded("quantity", 40) << padded("SI", 14)
-      << padded("lattice", 14) << "SI unit\n";
+  std::size_t longest = 5;
+  for (const Conversion& row : report.conversions) longest = std::max(longest, row.stage.size());
+  out << "\nConversions\n  " << padded("stage", longest) << padded("SI", 11) << padded("unit", 8)
+      << padded("lattice", 12) << "quantity\n";
   for (const Conversion& row : report.conversions) {
-    out << "  " << padded(row.stage, 12) << padded(row.quantity + (row.of.empty() ? "" : " (" + row.of + ")"), 40)
-        << padded(formatted(row.si), 14) << padded(formatted(row.lattice), 14) << row.unit << "\n";
+    out << "  " << padded(row.stage, longest) << padded(formatted(row.si), 11) << padded(row.unit, 8)
+        << padded(formatted(row.lattice), 12) << row.quantity << (row.of.empty() ? "" : " (" + row.of + ")") << "\n";
   }
 
   if (!report.packings.empty()) out << "\nCells packed at random\n";
@@ -131,11 +134,12 @@ std::string to_text(const Plan& plan, const PlanReport& report) {
   }
 
   write_wells(out, report.wells);
-  out << "\nLimits, sharpest first (margin below 1: beyond the limit)\n  " << padded("limit", 62) << padded("value", 12)
-      << padded("limit", 12) << "margin\n";
+  out << "\nLimits, sharpest first (margin below 1: beyond the limit)\n  " << padded("value", 11) << padded("limit", 11)
+      << padded("margin", 9) << "of\n";
   for (const Limit& limit : report.limits) {
-    out << "  " << padded(limit.name, 62) << padded(formatted(limit.value), 12) << padded(formatted(limit.limit), 12)
-        << formatted(limit.margin, "%.3g") << (limit.margin < 1 ? "   " + limit.remedy : "") << "\n";
+    out << "  " << padded(formatted(limit.value), 11) << padded(formatted(limit.limit), 11)
+        << padded(formatted(limit.margin, "%.3g"), 9) << limit.name << (limit.margin < 1 ? "; " + limit.remedy : "")
+        << "\n";
   }
 
   out << "\nModels\n";
@@ -171,7 +175,8 @@ nlohmann::json shared_sections(const PlanReport& report) {
           {"wells", report.wells},
           {"left_out", report.left_out},
           {"late_starts", report.late_starts},
-          {"box_share", report.box_share ? nlohmann::json(*report.box_share) : nlohmann::json()}};
+          {"box_share", report.box_share ? nlohmann::json(*report.box_share) : nlohmann::json()},
+          {"contacts", {{"close_below_m", report.close_gap}, {"attracting", report.attracting}}}};
 }
 
 nlohmann::json to_json(const Plan& plan, const PlanReport& report) {

@@ -80,9 +80,11 @@ using Named = std::vector<std::pair<std::string, Json>>;
 /// What a run came to, name by name: numbers, and the words that say what made them.
 Named outcome_of(const Json& summary) {
   Named all;
+  const bool joins = summary.contains("contacts") && !summary["contacts"]["attracting"].empty();
   for (const char* name : {"status", "outcome", "steps", "strain", "simulated_time_s", "aggregates_final", "wall_s",
                            "steps_per_s", "peak_rss_bytes", "threads", "precision", "git", "machine"})
-    if (summary.contains(name)) all.emplace_back(name, summary[name]);
+    if (summary.contains(name) && (joins || name != std::string_view("aggregates_final")))
+      all.emplace_back(name, summary[name]);
   if (summary.contains("failure")) all.emplace_back("failure", summary["failure"].value("reason", ""));
   for (const char* group : {"dimensionless", "conservation", "stretch"}) {
     if (!summary.contains(group) || !summary[group].is_object()) continue;
@@ -93,7 +95,7 @@ Named outcome_of(const Json& summary) {
   for (const Json& stage : summary["rheology"]) {
     const Json means = stage.value("means", Json::object());
     for (const auto& [name, value] : means.items())
-      if (value.is_object())
+      if (value.is_object() && (joins || !name.starts_with("aggregate")))
         all.emplace_back("mean/" + stage.value("stage", "") + "/" + name, value.value("mean", Json()));
   }
   return all;

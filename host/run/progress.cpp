@@ -54,13 +54,15 @@ struct Part {
 };
 constexpr int worth_of_the_bar = 6;
 std::vector<Part> parts(const ProgressState& state, double rate, double remaining_s) {
-  return {{formatted("%3.0f%%", 100 * within_one(state.fraction)), 9},
-          {formatted("ETA %9s", duration(remaining_s).c_str()), 8},
-          {formatted("strain %5.2f", state.strain), 7},
-          {formatted("%5.0f steps/s", rate), 3},
-          {formatted("Mach %7.2g", state.mach_max), 1},
-          {formatted("area drift %7.1e", state.area_drift), 2},
-          {formatted(state.rouleaux == 1 ? "%2d rouleau " : "%2d rouleaux", state.rouleaux), 4}};
+  std::vector<Part> all{{formatted("%3.0f%%", 100 * within_one(state.fraction)), 9},
+                        {formatted("ETA %9s", duration(remaining_s).c_str()), 8},
+                        {formatted("strain %5.2f", state.strain), 7},
+                        {formatted("%5.0f steps/s", rate), 3},
+                        {formatted("Mach %7.2g", state.mach_max), 1},
+                        {formatted("%s drift %7.1e", state.in_space ? "volume" : "area", state.area_drift), 2}};
+  if (state.rouleaux >= 0)
+    all.push_back({formatted(state.rouleaux == 1 ? "%2d rouleau " : "%2d rouleaux", state.rouleaux), 4});
+  return all;
 }
 std::string joined(const std::vector<Part>& parts) {
   std::string text;

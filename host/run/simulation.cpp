@@ -525,7 +525,7 @@ class Simulation {
     }
     if (fails(monitor::check_energy(state_.energy, cells_, ranks_, plan_, setting()))) return false;
     if (ranks_.first()) {
-      state_.history.follow(snapshot);
+      state_.history.follow(snapshot, summary_.plan.attracting);
       state_.rheology.follow(snapshot);
       if (directory_ != nullptr) directory_->write(snapshot);
     } else {
@@ -553,8 +553,9 @@ class Simulation {
             state_.strain_at(setting),
             state_.observer.mach_max(),
             state_.observer.area_drift_max(),
-            state_.history.rouleaux(),
-            left};
+            summary_.plan.attracting.empty() ? -1 : state_.history.rouleaux(),
+            left,
+            scene_.domain.depth.has_value()};
   }
 
   /// Adds to the summary what is known behind the last step.

@@ -26,11 +26,14 @@ Json to_json(const monitor::Failure& failure) {
 }
 
 Json to_json(const observe::AggregateEvent& event) {
-  return {{"strain", event.strain},
-          {"time_s", event.time},
-          {"count", event.count},
-          {"members", event.members.empty() ? Json() : Json(event.members)},
-          {"through_image", event.through_image}};
+  Json json{{"strain", event.strain},
+            {"time_s", event.time},
+            {"count", event.count},
+            {"members", event.members.empty() ? Json() : Json(event.members)},
+            {"through_image", event.through_image}};
+  if (!event.joined.empty()) json["joined"] = event.joined;
+  if (!event.met_images.empty()) json["met_images"] = event.met_images;
+  return json;
 }
 
 template <class T>
@@ -115,6 +118,9 @@ Json to_json(const Summary& summary) {
   for (const observe::AggregateEvent& event : summary.aggregate_history) history.push_back(to_json(event));
   result["energy"] = summary.energy;
   result["rheology"] = summary.rheology;
+  if (summary.plan.attracting.empty()) {
+    for (Json& stage : result["rheology"]) stage["dissociation"] = Json::array();  // what was not joined does not part
+  }
   result["stages"] = summary.stages;
   result["resumed"] = summary.resumed;
   return result;

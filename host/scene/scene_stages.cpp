@@ -1,6 +1,7 @@
 // Stages of a scene, and what is written when.
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "base/text.hpp"
 #include "driving_flow.hpp"
@@ -161,7 +162,13 @@ Oscillation read_oscillation(const SceneFields& fields, const std::string& stage
 Stage read_stage(const SceneFields& fields, const std::string& pointer, const Scene& scene) {
   Stage stage;
   stage.pointer = pointer;
-  fields.attempt([&] { stage.name = fields.line(pointer + "/name"); });
+  fields.attempt([&] {
+    stage.name = fields.line(pointer + "/name");
+    if (!stage.name.empty() && std::string_view("=+-@").find(stage.name.front()) != std::string_view::npos)
+      fields.refuse(pointer + "/name", in_quotes(stage.name) +
+                                           " would be a formula where a spreadsheet opens the tables; begin it with a "
+                                           "letter or digit");
+  });
   if (fields.has(pointer + "/duration")) stage.duration = fields.quantity(pointer + "/duration", "s", range::time);
   fields.attempt([&] {
     if (fields.has(pointer + "/strain")) stage.strain = fields.value<double>(pointer + "/strain");

@@ -145,8 +145,12 @@ Measured of_dissociation(const Quantity& quantity, const std::filesystem::path& 
   std::size_t start = sheared;
   while (start > 0 && stage[start] == stage[sheared]) --start;
   std::vector<CountChange> changes;
+  if (summary.contains("contacts") && summary.at("contacts").at("attracting").empty())
+    return undefined_because("no interaction attracts the cells to each other");
   for (const Json& event : summary.at("aggregate_history"))
-    changes.push_back({event.at("time_s"), event.at("strain"), event.at("count")});
+    changes.push_back(
+        {event.at("time_s"), event.at("strain"),
+         event.contains("joined") ? static_cast<int>(event.at("joined").size()) : event.at("count").get<int>()});
   const Dissociation found = dissociation(changes, strain, time[start], strain[start], count, quantity.for_good);
   if (found.at_start)
     return undefined_because("there are " + std::to_string(count) + " aggregates or more already when shear begins");

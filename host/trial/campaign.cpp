@@ -1,6 +1,8 @@
 #include "campaign.hpp"
 
 #include <iostream>
+#include <regex>
+#include <string_view>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -147,12 +149,23 @@ Json result_head(const CampaignKind& kind, const CampaignFile& file, const std::
           {"axes", axes_json(file.axes)}};
 }
 
+namespace {
+
+/// A text that a spreadsheet would compute stands behind an apostrophe; a quantity such as "-5 um" is none.
+std::string cell_text(const std::string& text) {
+  static const std::regex quantity(R"([+-]?[0-9.]+(e[+-]?[0-9]+)?( [A-Za-z0-9/ ]*)?)", std::regex::icase);
+  const bool computed = !text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
+  return files::csv_text(computed && !std::regex_match(text, quantity) ? '\'' + text : text);
+}
+
+}  // namespace
+
 std::string csv_line(const Json& fields) {
   std::string line;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const Json& field = fields[i];
     if (i > 0) line += ',';
-    if (!field.is_null()) line += field.is_string() ? files::csv_text(field.get<std::string>()) : field.dump();
+    if (!field.is_null()) line += field.is_string() ? cell_text(field.get<std::string>()) : field.dump();
   }
   return line + '\n';
 }

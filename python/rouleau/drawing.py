@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import json
 import os
 import pathlib
 from typing import TYPE_CHECKING, Any, Sequence
@@ -15,16 +16,14 @@ if TYPE_CHECKING:
 MOST_LINES = 12
 LABELS = {"strain": "strain", "deformation": "deformation", "min_gap_m": "gap to the nearest cell (µm)",
           "relative_viscosity": "relative viscosity"}
-#: Endings of columns, what they are drawn in, and how many of these are one SI unit.
-DRAWN_IN = [("_J_per_m", "J/m", 1.0), ("_W_per_m", "W/m", 1.0), ("_Pa_per_m", "Pa/m", 1.0), ("_m2_per_s", "µm²/s", 1e12),
-            ("_1_per_s", "1/s", 1.0), ("_rad", "°", 57.29577951308232), ("_m2", "µm²", 1e12), ("_Pa", "Pa", 1.0),
-            ("_m", "µm", 1e6), ("_s", "s", 1.0)]
+#: Endings of columns, their units, what they are drawn in, and how many of these are one; the longest first. The reports' own.
+ENDINGS = json.loads(pathlib.Path(__file__).with_name("endings.json").read_text(encoding="utf-8"))
 
 
 def label_of(column: str) -> tuple[str, float]:
     """What an axis says for a column, and by how much its values are multiplied."""
-    for ending, unit, scale in DRAWN_IN:
-        if column.endswith(ending):
+    for ending, _, unit, scale in ENDINGS:
+        if column.endswith(ending) and not column.removesuffix(ending).endswith("_per"):
             return LABELS.get(column, f"{column.removesuffix(ending).replace('_', ' ')} ({unit})"), scale
     return LABELS.get(column, column.replace("_", " ")), 1.0
 

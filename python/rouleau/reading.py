@@ -41,18 +41,43 @@ class Mean(NamedTuple):
     error: float  #: standard error of the mean, in the same unit
 
 
-def mean_and_error(values: Sequence[float] | Floats, parts: int = 4) -> Mean:
-    """Mean of the finite `values` [n], and its standard error from the means of `parts` equal parts, which are nearly
-    independent where a part is longer than the values remember. As many values as do not fit are left out at the
-    beginning. nan and nan where there are fewer values than parts."""
-    finite = [float(value) for value in values if math.isfinite(value)]
-    size = len(finite) // parts
-    if size == 0:
+def mean_and_error(values: Sequence[float] | Floats, parts: int = 4, times: Sequence[float] | Floats | None = None,
+                   begin: float = -math.inf) -> Mean:
+    """Mean of the finite `values` [n] over `times` [n] (not falling; without them each value counts the same) from `begin`
+    on, by trapezes, and its standard error from the means of `parts` parts of equal length, which are nearly independent
+    where a part is longer than the values remember. Nothing is left out. The error is nan where there are fewer values than
+    parts, and the mean where there is none."""
+    kept = [k for k, value in enumerate(values) if math.isfinite(value)]
+    y = [float(values[k]) for k in kept]
+    if times is None:  # a value lasts from one whole number to the next
+        x = [float(k) for k in range(len(y)) for _ in (0, 1)][1:] + [float(len(y))]
+        y = [value for value in y for _ in (0, 1)]
+    else:
+        x = [float(times[k]) for k in kept]
+    if not y or x[-1] < begin:
         return Mean(math.nan, math.nan)
-    finite = finite[len(finite) - parts * size:]
-    means = [math.fsum(finite[k * size:(k + 1) * size]) / size for k in range(parts)]
-    mean = math.fsum(means) / parts
+    first = max(begin, x[0])
+    length = x[-1] - first
+    if length <= 0:
+        return Mean(y[-1], math.nan)
+    cuts = [first + length * k / parts for k in range(parts)] + [x[-1]]
+    integrals = [_integral(x, y, a, b) for a, b in zip(cuts, cuts[1:])]
+    mean = math.fsum(integrals) / length
+    if sum(place >= first for place in (x if times is not None else x[::2])) < parts:
+        return Mean(mean, math.nan)
+    means = [integral * parts / length for integral in integrals]
     return Mean(mean, math.sqrt(math.fsum((m - mean) ** 2 for m in means) / (parts - 1) / parts))
+
+
+def _integral(x: Sequence[float], y: Sequence[float], begin: float, end: float) -> float:
+    """Of straight lines between the points (x, y), from `begin` to `end`."""
+    pieces = []
+    for a, b, ya, yb in zip(x, x[1:], y, y[1:]):
+        left, right = max(a, begin), min(b, end)
+        if left < right:
+            middle = ((left + right) / 2 - a) / (b - a)
+            pieces.append((right - left) * (ya + middle * (yb - ya)))
+    return math.fsum(pieces)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -181,12 +206,15 @@ class Outputs:
         return cells.drop_duplicates([over, "cell"], keep="last").pivot(index=over, columns="cell", values=column)
 
     def mean(self, column: str, begin: float = 0.5, parts: int = 4) -> Mean:
-        """Mean and standard error (`mean_and_error`) of a column of series.csv over the outputs after the share `begin`
-        of the strain, or of the time where the strain does not grow."""
+        """Mean in time and standard error (`mean_and_error`) of a column of series.csv after the share `begin` of the
+        time: of a stage's second half what summary.json has."""
         series = _with_columns(self.series, "series.csv", column)
-        over = "strain" if series["strain"].nunique() > 1 else "time_s"
-        first, last = series[over].iloc[0], series[over].iloc[-1]
-        return mean_and_error(series.loc[series[over] > first + begin * (last - first), column].to_numpy(), parts)
+        times = series["time_s"].to_numpy()
+        own = self._own(series)  # a stage begins with the last output of the one before it
+        return mean_and_error(series[column][own].to_numpy(), parts, times[own], times[0] + begin * (times[-1] - times[0]))
+
+    def _own(self, series: pandas.DataFrame) -> pandas.Series[bool]:
+        return series["step"] >= -1
 
     def plot(self, *columns: str, over: str | None = None, axes: Any = None) -> Any:
         """Draws columns of cells.csv (a line for each cell; beyond twelve the mean and the range) or series.csv and
@@ -204,6 +232,9 @@ class Stage(Outputs):
 
     def _steps(self) -> tuple[float, float]:
         return self._range
+
+    def _own(self, series: pandas.DataFrame) -> pandas.Series[bool]:
+        return series["stage_name"] == self.name
 
     def __repr__(self) -> str:
         return f"<stage {self.name} of {self._run.directory}>"
@@ -281,24 +312,32 @@ class Run(Outputs):
     @property
     def results(self) -> pandas.DataFrame:
         """What came out: `value`, `error` and `how` the error was found, in SI, for each quantity (index). With error bars
-        these are all; without, means over the second half of the last stage with their standard error (nan where
-        there are too few outputs), and the cells' mean deformation and the number of aggregates at the end, whose
-        error is not known (nan)."""
+        these are all; without, means in time over the second half of the last stage with their standard error (nan where
+        there are too few outputs), and the cells' mean deformation and, where cells attract each other, the number of
+        aggregates at the end, whose error is not known (nan)."""
         import pandas
         bars = self.error_bars
         if len(bars):
             return bars
         last = self.stage(self.stages[-1])
         series = last.series
+        told = self.summary["rheology"][-1]["means"] if self.finished and self.summary["rheology"] else {}
+        attracting = bool(self.summary.get("contacts", {}).get("attracting"))
+        empty = last.mean("cell_free_layer_empty").value if "cell_free_layer_empty" in series else math.nan
         rows: dict[str, tuple[float, float, str]] = {}
         cells = self.cells
         if len(cells):
             end = cells[cells["step"] == cells["step"].max()]
             rows["deformation"] = (float(end["deformation"].mean()), math.nan, "at the end; no error bar")
-            rows["aggregates"] = (float(end["aggregate"].nunique()), math.nan, "at the end; no error bar")
+            if attracting:
+                rows["aggregates"] = (float(end["aggregate"].nunique()), math.nan, "at the end; no error bar")
         for column in MEANS:
-            if series[column].notna().any():
-                rows[column] = (*last.mean(column), "mean of the last stage's second half, standard error from four parts")
+            if column not in series or series[column].isna().all() or (column.startswith("aggregate") and not attracting) or \
+                    (column.startswith("cell_free_layer") and not empty < MOST_EMPTY_COLUMNS):
+                continue
+            mean = told.get(column)
+            rows[column] = (*((mean["mean"], math.nan if mean["error"] is None else mean["error"]) if mean else last.mean(column)),
+                            "mean of the last stage's second half, standard error from four parts; no error bar")
         return pandas.DataFrame.from_dict(rows, orient="index", columns=["value", "error", "how"]).rename_axis("quantity")
 
     @property
@@ -427,9 +466,12 @@ class Run(Outputs):
                      (size[0], size[1]), cells, fields)
 
 
+#: Share of columns without cells from which on a mean cell-free layer says nothing.
+MOST_EMPTY_COLUMNS = 0.05
 #: Columns of series.csv whose mean over a stage says something.
 MEANS = ("relative_viscosity", "particle_stress_Pa", "aggregate_size_number_mean", "aggregate_size_weight_mean",
-         "cell_free_layer_lower_m", "cell_free_layer_upper_m", "flow_rate_m2_per_s")
+         "cell_free_layer_lower_m", "cell_free_layer_upper_m", "flow_rate_m2_per_s",
+         "mean_velocity_m_per_s")
 
 
 def open(directory: str | os.PathLike[str]) -> Run:  # noqa: A001

@@ -7,7 +7,7 @@ import subprocess
 
 USAGE = re.compile(r"^  (\w+) (.*?)  +(.*)$", re.MULTILINE)
 OPTION = re.compile(r"^  (--[a-z-]+)(?: (.*?))?(?:  +(.*))?$")
-KINDS, SCENES = "collision membrane interaction scene", "demo channel suspension capsule"  # of rouleau new
+KINDS, SCENES = "collision membrane interaction scene", "demo channel suspension capsule red-cell-3d doublet-3d suspension-3d capsule-3d tube-3d"  # of rouleau new
 FILES = {"SCENE", "FILE", "DIR", "MANIFEST"}
 ENVIRONMENT = {
     "ROULEAU_LAUNCHER": "none: this process is alone, whatever has started it",
@@ -21,13 +21,14 @@ ENVIRONMENT = {
     "ROULEAU_TIMING_LOCK": "the file that rouleau study locks while it takes times, so that two studies do not disturb each other",
     "XDG_RUNTIME_DIR": "the folder of that file, rouleau-timing.lock, where the variable above is not set; else /tmp",
     "UDUNITS2_XML_PATH": "the database of units, for UDUNITS-2",
+    "COLUMNS": "characters in a line of help, plan, plugins and limits, at most 100, where it is not the terminal's",
     "NO_COLOR": "not empty: no colours on a terminal",
     "TERM": "dumb: no colours on a terminal",
 }
 
 
 def said(program, *arguments):
-    return subprocess.run([program, *arguments], capture_output=True, text=True, check=True, timeout=60).stdout
+    return subprocess.run([program, *arguments], capture_output=True, text=True, check=True, timeout=60, env={**os.environ, "COLUMNS": "80"}).stdout
 
 
 class Option:
@@ -96,7 +97,7 @@ _rouleau() {{
     id) mapfile -t COMPREPLY < <(compgen -W "$("${{COMP_WORDS[0]/#\\~/$HOME}}" plugins --json 2>/dev/null |
           sed -n 's/^ *"id": "\\(.*\\)",*$/\\1/p')" -- "$word") ;;
     kind) [[ $COMP_CWORD -eq 2 ]] && mapfile -t COMPREPLY < <(compgen -W "{KINDS}" -- "$word")
-          [[ $COMP_CWORD -eq 4 && ${{COMP_WORDS[2]}} == scene ]] && mapfile -t COMPREPLY < <(compgen -W "{SCENES}" -- "$word") ;;
+          [[ $COMP_CWORD -eq 3 && ${{COMP_WORDS[2]}} == scene ]] && mapfile -t COMPREPLY < <(compgen -W "{SCENES}" -- "$word") ;;
     folder) compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
     file) compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -f -- "$word") ;;
     json) compopt -o filenames 2>/dev/null

@@ -11,7 +11,8 @@ edited. [../scene.md](../scene.md) is the introduction, with an example and what
 The first column is the JSON pointer, as `--set` and messages use it; `N` stands for the place in a list, from 0, `NAME`
 for a name of the author's. **Bold** keys must be there where the object is that holds them. A *quantity* is text with a
 unit, of the dimension of the unit that is given here (of a model's parameter: see [models.md](models.md)); a plain
-number is taken in that unit. A *vector* is a list of two quantities, along x and y.
+number is taken in that unit. A *vector* is a list of two quantities, along x and y; in
+three dimensions of three, the last along z.
 """
 FILE_KEYS = ("rouleau", "title", "notes", "expected", "$schema", "plugin_dirs")
 

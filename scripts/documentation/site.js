@@ -15,11 +15,11 @@ function sections() {
     this.field("text");
     searchable.forEach((section, number) => this.add({number, ...section}));
   });
-  const words = field.value.toLowerCase().match(/[\w.-]+/g) ?? [];
+  // As the index has them: without the words that it leaves out, by their stems. The last word may still be incomplete.
+  const words = lunr.tokenizer(field.value).map(lunr.trimmer).filter(word => word.toString() && lunr.stopWordFilter(word));
   if (!words.length) return [];
-  // The last word may still be incomplete.
-  const all = query => words.forEach((word, place) => query.term(word, {
-    presence: lunr.Query.presence.REQUIRED,
+  const all = query => words.forEach((word, place) => query.term(lunr.stemmer(word).toString(), {
+    presence: lunr.Query.presence.REQUIRED, usePipeline: false,
     wildcard: place === words.length - 1 ? lunr.Query.wildcard.TRAILING : lunr.Query.wildcard.NONE}));
   return index.query(all).slice(0, 12).map(result => searchable[result.ref]);
 }

@@ -168,7 +168,7 @@ def write(root, out):
         for word, other in (("previous", place - 1), ("next", place + 1)):
             there = PAGES[other] if 0 <= other < len(PAGES) else None
             step[word] = f'<a class="{word}" href="{name_of(there)}">{plain(titles[there])}</a>' if there else ""
-        searchable += sections_of(page, plain(titles[page]), body)
+        searchable += sections_of(page, titles[page].replace("`", ""), body)
         text = PAGE.format(title=plain(titles[page]), navigation=navigation(titles, page, tokens, interfaces),
                            body=relinked(body, root, page, out), **step)
         (out / name_of(page)).write_text(text)

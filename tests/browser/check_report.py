@@ -64,6 +64,65 @@ class PageCase(BrowserCase):
             self.assertLessEqual(page.run("document.scrollingElement.scrollWidth"), width)
 
 
+class A_run_without_attraction(PageCase):
+    """A driven channel whose cells touch, and nothing attracts them."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.directory = folder / "channel"
+        rouleau("run", SOURCE / "scenes/channel.json", "--out", cls.directory, "--quiet", "--max-steps", "300", "--set", '/output/cells={"seconds": 0.0002}')
+
+    def test_is_not_told_as_aggregation(self):
+        page = self.open(self.directory / "report.html")
+        text = page.run("document.body.innerText.replace(document.querySelector('h1').innerText, '').replaceAll('rouleau run --error-bar', '').replaceAll('Aggregate size', '?')")
+        self.assertGreater(page.run("Math.max(...timeline.runs[0].summary.aggregate_history.flatMap(h => h.members.map(m => m.length)))"), 1)
+        self.assertNotRegex(text, r"(?i)rouleau[x ]|aggregat|joined|broke|break-up")
+        self.assertEqual(page.run("document.querySelectorAll('.story button, button.event:not(.stage)').length"), 0)
+        self.assertEqual(page.run("document.querySelector(\"select[aria-label='Cells by']\").value"), "cell")
+        self.assertIn("Cells that are close (gaps below 0.75 µm); nothing joins them", page.run("document.querySelector('main').textContent"))
+        self.assert_sound(page)
+
+    def test_has_results_with_the_digits_that_they_have_and_the_units_that_they_need(self):
+        page = self.open(self.directory / "report.html")
+        summary = json.loads((self.directory / "summary.json").read_text())
+        means = summary["rheology"][-1]["means"]
+        result = page.run("document.querySelector('.result').innerText")
+        self.assertIn("No error bars were measured", result)
+        self.assertRegex(result, r"mean velocity\s+[0-9]{2,4} µm/s")
+        self.assertNotIn("Mach", result)
+        self.assertNotIn("cell-free", result)  # most columns of so short a run in so empty a channel have no cell
+        self.assertGreater(means["cell_free_layer_empty"]["mean"], 0.05)
+        viscosity = page.run("resultOf(timeline.runs[0]).numbers.find(n => n.label === 'relative viscosity').value")
+        self.assertLessEqual(len(viscosity.replace(".", "")), 3)
+        row = page.run("(() => { const row = [...document.querySelectorAll('tr')].find(r => r.innerText.startsWith('Pressure gradient') || r.firstChild.textContent.startsWith('Pressure gradient'));"
+                       " return [...row.children].map(c => c.textContent); })()")
+        self.assertEqual(row[0], "Pressure gradient, Pa/m")
+        self.assertAlmostEqual(float(row[2].replace("\u202f", "")) / means["pressure_gradient_Pa_per_m"]["mean"], 1, delta=0.01)
+
+    def test_names_every_column_with_its_unit(self):
+        drawn = {"": ("", 1), "s": (", s", 1), "m": (", µm", 1e6), "rad": (", °", 180 / 3.141592653589793), "m2": (", µm²", 1e12), "m3": (", µm³", 1e18),
+                 "1/s": (", 1/s", 1), "Pa": (", Pa", 1), "Pa/m": (", Pa/m", 1), "m2/s": (", µm²/s", 1e12), "m/s": (", µm/s", 1e6), "J/m": (", J/m", 1), "W/m": (", W/m", 1)}
+        columns = [column for t in json.loads(rouleau("columns").stdout) for column in t["columns"]]
+        page = self.open(self.directory / "report.html")
+        found = page.run(f"{json.dumps([column['column'] for column in columns])}.map(drawnAs)")
+        for column, shown in zip(columns, found, strict=True):
+            with self.subTest(column["column"]):
+                unit, factor = drawn[column["unit"]]
+                self.assertEqual(shown["factor"], factor)
+                self.assertEqual("," + shown["title"].partition(",")[2] if "," in shown["title"] else "", unit)
+        endings = page.run("endings.map(e => e[0])")
+        self.assertEqual(endings, sorted(endings, key=lambda e: -len(e)))
+        self.assertEqual(page.run("spelled('steps_per_s')"), "Steps per s")
+
+    def test_beside_one_with_attraction_is_neither(self):
+        rouleau("report", "--compare", self.directory, folder / "a", "--out", folder / "mixed.html")
+        page = self.open(folder / "mixed.html")
+        titles = page.run("[...document.querySelectorAll('.chart h3')].map(h => h.textContent)")
+        self.assertIn("Groups of close cells, single cells included", titles)
+        self.assertFalse([title for title in titles if title.startswith("Aggregates")])
+        self.assert_sound(page)
+
+
 class Every_page_on_every_screen(PageCase):
     FILES = {"run": "a/report.html", "comparison": "both.html"}
 
@@ -415,6 +474,40 @@ class The_page_of_a_run_in_three_dimensions(PageCase):
             page.run("timeline.seek(0)")
             self.assertNotEqual(page.run(self.PIXELS)[1], first)
             self.assert_sound(page, SCREENS[screen]["width"])
+
+    def test_leaves_the_wheel_and_one_finger_to_the_page(self):
+        page = self.open(self.directory / "report.html", part="#strain=0.4")
+        page.run(Every_page_on_every_screen.DRAWN)
+        first = page.run(self.PIXELS)
+        wheel = "!document.querySelector('canvas.space').dispatchEvent(new WheelEvent('wheel', {deltaY: -300, ctrlKey: %s, bubbles: true, cancelable: true}))"
+        self.assertFalse(page.run(wheel % "false"), "the page cannot scroll")
+        self.assertEqual(page.run(self.PIXELS), first)
+        self.assertTrue(page.run(wheel % "true"))
+        self.assertGreater(page.run(self.PIXELS)[0], first[0])
+
+        page = self.open(self.directory / "report.html", "phone", part="#strain=0.4")
+        page.run("document.querySelector('canvas.space').scrollIntoView({block: 'center'})")
+        page.run(Every_page_on_every_screen.DRAWN)
+        x, y = page.run("(r => [r.left + r.width / 2, r.top + r.height / 2])(document.querySelector('canvas.space').getBoundingClientRect())")
+
+        def fingers(kind, *places):
+            page.call("Input.dispatchTouchEvent", type=kind, touchPoints=[{"x": a, "y": b, "id": k} for k, (a, b) in enumerate(places)])
+
+        first, scroll = page.run(self.PIXELS), page.run("scrollY")
+        fingers("touchStart", (x, y))
+        for step in (10, 40, 80, 120):
+            fingers("touchMove", (x, y - step))
+        fingers("touchEnd")
+        page.wait(f"scrollY > {scroll + 30}")
+        page.run(f"scrollTo(0, {scroll})")
+        page.run(Every_page_on_every_screen.DRAWN)
+        self.assertEqual(page.run(self.PIXELS), first, "one finger has turned it")
+        fingers("touchStart", (x - 30, y), (x + 30, y))
+        for step in (32, 45, 60):
+            fingers("touchMove", (x - step, y), (x + step, y))
+        fingers("touchEnd")
+        self.assertGreater(page.run(self.PIXELS)[0], first[0], "two fingers do not come closer")
+        self.assertEqual(page.run("[scrollY, visualViewport.scale]"), [scroll, 1])
 
     def test_cuts_the_surfaces_where_the_reader_wants(self):
         page = self.open(self.directory / "report.html", part="#strain=0.4")

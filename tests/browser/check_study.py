@@ -176,6 +176,18 @@ class The_page_of_a_study(PageCase):
         self.assertEqual(page.run("[...document.querySelectorAll('.scatter .band')].length"), 2)
         self.assertEqual(page.run("[...document.querySelectorAll('.scatter .strong')].map(t => t.textContent)"), ["cheapest below 5 %, target", "default"] * 2)
 
+    def test_has_guides_that_fall_with_the_lines_of_its_methods(self):
+        page = self.open(PAGES["study"])
+        # Errors fall along both lines; the worst method is there at the fine end alone.
+        line = "(x, y) => ({x, y})"
+        lines = f"(p => [{{points: [p(10, 1), p(20, .3)]}}, {{points: [p(20, 90), null, p(10, 200)]}}, {{points: [p(20, 800)]}}, {{points: [p(20, 900)]}}, {{points: [p(20, 950)]}}])({line})"
+        for scale, falls in ((1, True), (-1, False)):
+            guides = page.run(f"(lines => slopesOf({{lines, drawn: lines.flatMap(l => l.points.filter(Boolean))}}))({lines}.map(l => ({{points: l.points.map(p => p && {{x: {scale} > 0 ? p.x : 200 / p.x, y: p.y}})}})))")
+            self.assertEqual([guide["text"] for guide in guides], ["order 1", "order 2"])
+            for guide in guides:
+                self.assertLess(guide["to"]["y"], guide["from"]["y"])
+                self.assertEqual(guide["from"]["x"] < guide["to"]["x"], falls)
+
     def test_draws_a_point_at_its_time_and_error(self):
         page = self.open(PAGES["study"])
         for point in (STUDY["points"][10], STUDY["points"][-1]):

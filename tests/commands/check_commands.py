@@ -34,7 +34,7 @@ class Installation:
         self.program = self.root / "bin" / "rouleau"
 
     def run(self, *arguments, **options):
-        environment = dict(os.environ)
+        environment = {**os.environ, **options.pop("env", {})}
         environment.pop("ROULEAU_PLUGIN_PATH", None)
         return subprocess.run([self.program, *map(str, arguments)], capture_output=True, text=True, timeout=300,
                               env=environment, **options)
@@ -690,6 +690,79 @@ class Commands_do_what_they_say(Case):
         _, errors = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, errors)
         self.assertEqual(json.loads((out / "summary.json").read_text())["status"], "interrupted")
+
+
+class Words_on_a_terminal(Case):
+    def test_fit_its_columns_and_no_word_is_broken(self):
+        words = [["--help"], *([command, "--help"] for command in ("run", "plan", "plugins", "conform", "new", "study", "limits", "verify", "report")),
+                 ["plan", SCENE], ["plan", SOURCE / "scenes/red-cell-3d.json"], ["plan", SCENE, "--set", "/numerics/density_factor=300000"], ["plugins"]]
+        for arguments in words:
+            texts = {columns: self.rouleau.run(*arguments, env={"COLUMNS": str(columns)}).stdout for columns in (80, 100, 300)}
+            with self.subTest(arguments):
+                self.assertEqual(texts[100], texts[300], "wider than 100")
+                self.assertEqual(texts[80].split(), texts[100].split())
+                for columns in (80, 100):
+                    long = [line for line in texts[columns].splitlines() if len(line) > columns and len(line.split()) > 1]
+                    self.assertEqual(long, [])
+
+    def test_of_plugins_have_paths_on_request(self):
+        short, long = (self.rouleau.run("plugins", *options).stdout for options in ((), ("--paths",)))
+        manifests = sum(str(self.rouleau.plugins / "interaction") in line for line in long.splitlines())
+        self.assertEqual(manifests, len(list((self.rouleau.plugins / "interaction").glob("*/*.json"))))
+        self.assertNotIn("morse.json", short)
+
+
+class Names_are_no_more_than_names(Case):
+    def test_no_stage_is_a_formula_in_a_spreadsheet(self):
+        for name in ("=1+1", "+1", "-shear", "@SUM(A1)"):
+            with self.subTest(name):
+                stages = json.loads(SCENE.read_text())["stages"]
+                stages[0]["name"] = name
+                self.assert_stops(self.rouleau.run("plan", self.scene(stages=stages)), 2, "/stages/0/name", "formula", "letter or digit")
+
+    def test_a_scene_without_a_name_wants_out(self):
+        for name in ("..json", "...json"):
+            with self.subTest(name):
+                file = self.path / name
+                shutil.copy(SCENE, file)
+                before = sorted(self.path.rglob("*"))
+                self.assert_stops(self.rouleau.run("run", name, "--max-steps", "3", cwd=self.path), 2, "--out")
+                for command in ("study", "limits"):
+                    self.assertNotEqual(self.rouleau.run(command, name, cwd=self.path).returncode, 0)
+                self.assertEqual(sorted(self.path.rglob("*")), before)
+                self.assertEqual(self.rouleau.run("run", name, "--out", "named", *SHORT, cwd=self.path).returncode, 0)
+                shutil.rmtree(self.path / "named")
+                file.unlink()
+
+
+class Cells_that_nothing_attracts(Case):
+    WORDS = re.compile(r"rouleau(x| of)|aggregat|joined|broke|single cells", re.IGNORECASE)
+
+    def test_are_close_and_no_more_in_what_a_run_says(self):
+        scene = json.loads(SCENE.read_text())
+        row = {"type": "rbc", "row": {**scene["cells"][0]["row"], "spacing": "3.0 um"}}
+        stages = [{"name": "rest", "duration": "0.002 s"}, {"name": "shear", "shear_rate": "20 1/s", "strain": 0.05, "start": "developed"}]
+        often = {"cells": {"seconds": "0.0005 s"}}
+        for interactions in ([], [{**scene["interactions"][0], "parameters": {"depth": 0}}],
+                             [{"between": ["rbc", "rbc"], "model": "repulsion", "parameters": {"strength": "1e-7 J/m2"}}]):
+            with self.subTest(interactions):
+                file = self.scene(title="without", cells=[row], interactions=interactions, stages=stages, output=often)
+                shutil.rmtree(self.path / "run", ignore_errors=True)
+                result = self.rouleau.run("run", file, "--out", self.path / "run")
+                self.assertEqual(result.returncode, 0, result.stderr)
+                summary = json.loads((self.path / "run/summary.json").read_text())
+                self.assertEqual(summary["contacts"], {"close_below_m": 7.5e-7, "attracting": []})
+                self.assertEqual([stage["dissociation"] for stage in summary["rheology"]], [[], []])
+                said = result.stdout + result.stderr
+                self.assertIn("4 of 4 cells were close, with gaps below 0.75 um; nothing attracts them", said)
+                self.assertIsNone(self.WORDS.search(said), said)
+
+    def test_are_joined_where_a_well_is_between_them(self):
+        file = self.scene(stages=[{"name": "rest", "duration": "0.002 s"}], output={"cells": {"seconds": "0.0005 s"}, "aggregate_gap": "2 um"})
+        result = self.rouleau.run("run", file, "--out", self.path / "run")
+        self.assertIn("rouleau of 4 from the start; still whole at the end", result.stdout + result.stderr)
+        summary = json.loads((self.path / "run/summary.json").read_text())
+        self.assertEqual(summary["contacts"], {"close_below_m": 2e-6, "attracting": [["rbc", "rbc"]]})
 
 
 class Documents_tell_what_is_so(Case):

@@ -122,22 +122,41 @@ class New_makes_a_model(Case):
 
 
 class New_scene(Case):
-    TEMPLATES = ("demo", "channel", "suspension", "suspension-3d", "capsule")
+    TEMPLATES = {"demo": "two dimensions, 2 cells", "channel": "two dimensions, 14 cells", "suspension": "two dimensions, 17 cells",
+                 "capsule": "two dimensions, 1 cell,", "suspension-3d": "three dimensions, 14 cells", "capsule-3d": "three dimensions, 1 cell,",
+                 "red-cell-3d": "three dimensions, 1 cell,", "doublet-3d": "three dimensions, 2 cells", "tube-3d": "three dimensions, no cells"}
 
     def test_of_each_template_plans_and_runs_as_it_is(self):
-        for template in self.TEMPLATES:
+        for template, about in self.TEMPLATES.items():
             with self.subTest(template):
-                words = self.new("scene", template, template)
+                words = self.new("scene", template)
                 scene = self.desk / f"{template}.json"
                 self.assertIn(f"rouleau run {template}.json", words)
+                self.assertIn(about, words)
+                self.assertRegex(words, r"about [0-9.]+ (s|min|h) on one core")
                 shipped = [SOURCE / "scenes" / folder / scene.name for folder in (".", "templates")]
                 self.assertEqual([scene.read_bytes()], [file.read_bytes() for file in shipped if file.exists()])
                 plan = self.call("plan", scene, "--json")
                 self.assertEqual(plan.returncode, 0, plan.stderr)
                 exceeded = [limit["name"] for limit in json.loads(plan.stdout)["limits"] if limit["margin"] < 1]
                 self.assertEqual(exceeded, [])
-                result = self.call("run", scene, "--out", self.path / template, "--max-steps", "20", "--quiet")
+                steps = "2" if template.endswith("-3d") else "20"
+                result = self.call("run", scene, "--out", self.path / template, "--max-steps", steps, "--quiet")
                 self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_has_the_name_and_the_template_that_are_meant_whichever_stands_first(self):
+        shipped = {name: next(f.read_bytes() for f in (SOURCE / f"scenes/{name}.json", SOURCE / f"scenes/templates/{name}.json") if f.exists())
+                   for name in self.TEMPLATES}
+        for words, file, template in (((), "demo", "demo"), (("first", "channel"), "first", "channel"), (("channel", "second"), "second", "channel"),
+                                      (("capsule", "--name", "third"), "third", "capsule"), (("--name", "fourth"), "fourth", "demo"),
+                                      (("doublet-3d", "--name", "capsule"), "capsule", "doublet-3d"), (("fifth",), "fifth", "demo")):
+            with self.subTest(words):
+                self.new("scene", *words)
+                self.assertEqual((self.desk / f"{file}.json").read_bytes(), shipped[template])
+        self.assertIn("Its name ends in -3d, but it has two dimensions", self.new("scene", "mine-3d"))
+        self.assert_stops(self.call("new", "scene", "capsule", "channel"), 2, "both", "new scene channel --name capsule")
+        self.assert_stops(self.call("new", "scene", "capsul", "--name", "x"), 2, 'did you mean "capsule"?')
+        self.assert_stops(self.call("new", "interaction", "org.example.x", "--name", "y"), 2, "for scenes only")
 
     def test_has_notes_on_its_parts_which_a_run_does_not_look_at(self):
         self.new("scene", "mine.json")  # the ending may be given

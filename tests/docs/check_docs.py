@@ -227,7 +227,8 @@ class Documentation(unittest.TestCase):
             said = message.split(" N")[0]
             self.assertTrue(said in source or said[-45:] in source, message)  # some are put together from pieces
 
-    def test_the_site_holds_every_page_and_no_dead_link(self):
+    def site(self):
+        """A folder with the site."""
         try:
             subprocess.run(["/usr/bin/python3", "-c", "import markdown"], check=True, capture_output=True)
         except subprocess.CalledProcessError:
@@ -235,6 +236,10 @@ class Documentation(unittest.TestCase):
         folder = pathlib.Path(tempfile.mkdtemp(prefix="rouleau-site-"))
         self.addCleanup(shutil.rmtree, folder)
         subprocess.run([SOURCE / "scripts/docs", "--site", folder], check=True, capture_output=True)
+        return folder
+
+    def test_the_site_holds_every_page_and_no_dead_link_and_its_search_finds_ordinary_words(self):
+        folder = self.site()
         pages = {path.name: path.read_text() for path in folder.glob("*.html")}
         self.assertEqual(len(pages), len(PAGES))
         for name, text in pages.items():
@@ -243,7 +248,22 @@ class Documentation(unittest.TestCase):
                 if anchor:
                     self.assertIn(f'id="{anchor}"', pages[path or name], f"{name}: {path}#{anchor}")
             self.assertNotRegex(text, r'(?:href|src)="(?:https?:)?//[^"]*\.(?:js|css|woff)')  # works without a network
+        self.search(folder)
 
+    def search(self, folder):
+        """Words in several forms, with words between them that no index has, and one that is still being typed."""
+        if not shutil.which("chromium"):
+            return
+        sys.path.insert(0, str(SOURCE / "tests/browser"))
+        from browser import Browser
+        words = ["install", "segments", "triangles", "membranes", "walls", "checkpoints", "hemocell", "error bars",
+                 "membrane laws", "how to resume", "the density factor", "slip-correction", "membra", "Newcomer's"]
+        with Browser() as browser:
+            page = browser.open((folder / "index.html").as_uri())
+            self.assertNotIn("&#x27;", page.run("searchable.map(s => s.of + s.title).join()"))
+            for text in words:
+                found = page.run(f"(field.value = {json.dumps(text)}, field.dispatchEvent(new Event('input')), found.children.length)")
+                self.assertGreater(found, 1, text)
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

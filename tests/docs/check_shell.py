@@ -19,7 +19,7 @@ MADE = BUILD / "share"
 
 
 def said(*arguments):
-    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=True).stdout
+    return subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, check=True, env={**os.environ, "COLUMNS": "80"}).stdout
 
 
 # Read in another way than scripts/documentation/commands.py does.
@@ -58,7 +58,7 @@ class In_the_shell(unittest.TestCase):
         self.assertEqual(self.offered("rouleau", "run", "x.json", "--lock", "n"), {"notes.txt"})
         self.assertEqual(self.offered("rouleau", "report", ""), {"runs"})
         self.assertEqual(self.offered("rouleau", "new", "m"), {"membrane"})
-        self.assertEqual(self.offered("rouleau", "new", "scene", "x", "c"), {"channel", "capsule"})
+        self.assertEqual(self.offered("rouleau", "new", "scene", "c"), {"channel", "capsule", "capsule-3d"})
         self.assertEqual(self.offered("rouleau", "plugins", "lennard"), {"lennard-jones", "lennard-jones-shifted"})
         self.assertEqual(self.offered("rouleau", "run", "x.json", "--threads", ""), set())
 

@@ -6,6 +6,7 @@ import json
 import math
 import os
 import shutil
+import subprocess
 import tempfile
 
 from package import Case, main, need, small_scene
@@ -224,18 +225,52 @@ class A_run_that_goes_on(Case):
 
 class A_mean(Case):
     def test_has_the_error_of_the_mean_of_its_parts(self):
-        # Four parts with means 1, 2, 3, 4 (the first value does not fit): mean 2.5, variance of the means 5/3.
-        mean = rouleau.mean_and_error([99, 0, 2, 1, 3, math.nan, 2, 4, 3, 5])
+        # Four parts with means 1, 2, 3, 4: mean 2.5, variance of the means 5/3.
+        mean = rouleau.mean_and_error([0, 2, 1, 3, math.nan, 2, 4, 3, 5])
         self.assertEqual(mean.value, 2.5)
         self.assertAlmostEqual(mean.error, math.sqrt(5 / 3 / 4), delta=1e-15)
+        # Nothing is left out: of five values the parts have one and a quarter each.
+        mean = rouleau.mean_and_error([1, 1, 1, 1, 6])
+        self.assertEqual(mean.value, 2)
+        self.assertAlmostEqual(mean.error, math.sqrt((3 * 1 ** 2 + 3 ** 2) / 3 / 4), delta=1e-15)
+
+    def test_weights_outputs_by_the_time_for_which_they_stand(self):
+        # 3 - t from 1 on: as in the program's own tests, wherever outputs fall.
+        for times in ([0, 0.9, 1.1, 1.2, 1.3, 2], [0, 1, 1.25, 1.5, 1.75, 2]):
+            mean = rouleau.mean_and_error([3 - t for t in times], times=times, begin=1)
+            self.assertAlmostEqual(mean.value, 1.5, delta=1e-14)
+            self.assertAlmostEqual(mean.error, math.sqrt(0.3125 / 3 / 4), delta=1e-14)
 
     def test_of_too_few_values_is_no_number(self):
-        self.assertTrue(all(map(math.isnan, rouleau.mean_and_error([1, 2, 3]))))
+        self.assertTrue(math.isnan(rouleau.mean_and_error([1, 2, 3]).error))
+        self.assertTrue(all(map(math.isnan, rouleau.mean_and_error([math.nan]))))
 
-    def test_is_over_the_second_half_of_the_strain(self):
-        stage = RUN.stage("shear")
-        late = stage.series[stage.series["strain"] > 1 * stage.series["strain"].iloc[-1] / 2]
-        self.assertEqual(stage.mean("relative_viscosity"), rouleau.mean_and_error(late["relative_viscosity"]))
+    def test_has_one_value_in_the_summary_in_python_and_in_tables_of_results(self):
+        for told in RUN.summary.rheology:
+            stage = RUN.stage(told.stage)
+            for column, mean in told.means.items():
+                if not isinstance(mean, dict):
+                    continue
+                with self.subTest(stage=told.stage, column=column):
+                    own = stage.mean(column)
+                    scale = max(abs(mean["mean"]), 1e-300)
+                    self.assertAlmostEqual(own.value / scale, mean["mean"] / scale, delta=1e-9)
+                    self.assertEqual(math.isnan(own.error), mean["error"] is None)
+                    if mean["error"] is not None:
+                        self.assertAlmostEqual(own.error / scale, mean["error"] / scale, delta=1e-9)
+        last = RUN.summary.rheology[-1].means
+        shared = [name for name in RUN.results.index if isinstance(last.get(name), dict)]
+        self.assertIn("relative_viscosity", shared)
+        self.assertIn("aggregate_size_number_mean", shared)
+        for name in shared:
+            self.assertEqual(RUN.results.loc[name, "value"], last[name]["mean"])
+
+    def test_of_layers_and_of_cells_that_nothing_joins_is_no_result(self):
+        self.assertGreater(RUN.stage("shear").mean("cell_free_layer_empty").value, 0.05)
+        self.assertNotIn("cell_free_layer_lower_m", RUN.results.index)
+        self.assertIn("aggregates", RUN.results.index)
+        alone = rouleau.run(small_scene(interactions=[]), self.path / "alone", progress=False)
+        self.assertFalse([name for name in alone.results.index if "aggregate" in name])
 
 
 class Two_runs(Case):
@@ -261,6 +296,20 @@ class Figures(Case):
     def tearDown(self):
         from matplotlib import pyplot
         pyplot.close("all")
+
+    def test_have_the_right_unit_for_every_column_that_a_run_can_have(self):
+        from rouleau.drawing import label_of
+        drawn = {"": ("", 1), "s": ("(s)", 1), "m": ("(µm)", 1e6), "rad": ("(°)", 180 / math.pi), "m2": ("(µm²)", 1e12), "m3": ("(µm³)", 1e18),
+                 "1/s": ("(1/s)", 1), "Pa": ("(Pa)", 1), "Pa/m": ("(Pa/m)", 1), "m2/s": ("(µm²/s)", 1e12), "m/s": ("(µm/s)", 1e6), "J/m": ("(J/m)", 1), "W/m": ("(W/m)", 1)}
+        tables = json.loads(subprocess.run([os.environ["ROULEAU"], "columns"], capture_output=True, check=True).stdout)
+        columns = [column for table in tables for column in table["columns"]]
+        self.assertGreater(len(columns), 60)
+        for column in columns:
+            with self.subTest(column["column"]):
+                unit, scale = drawn[column["unit"]]
+                label, found = label_of(column["column"])
+                self.assertEqual(found, scale)
+                self.assertTrue(label.endswith(unit) and ("(" in label) == (unit != ""), label)
 
     def test_show_a_line_for_each_cell(self):
         axes = RUN.plot("deformation")

@@ -6,12 +6,14 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <sstream>
 #include <system_error>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "json/schema.hpp"
 #include "program.hpp"
+#include "terminal.hpp"
 #include "units/units.hpp"
 
 namespace rouleau::command {
@@ -23,7 +25,8 @@ namespace {
 /// The options that are given by name: `help` has shown the positional ones in its first line.
 options::options_description named(const options::options_description& all,
                                    const options::positional_options_description& positional) {
-  options::options_description result("options");
+  constexpr unsigned one_line = 1000;  // they are broken later, and never within a word
+  options::options_description result("options", one_line, one_line / 2);
   for (const auto& option : all.options()) {
     bool by_place = false;
     // A command may take any number of arguments by place, but has no more names for them than options.
@@ -77,7 +80,9 @@ bool parse_command_line(const std::string& command, const std::string& help, con
                        .run(),
                    values);
     if (values.count("help") != 0) {
-      std::cout << help << "\n" << named(description, positional);
+      std::ostringstream listed;
+      listed << named(description, positional);
+      std::cout << reflowed(help, text_width()) << "\n" << folded(listed.str(), text_width());
       return false;
     }
     options::notify(values);
@@ -111,6 +116,14 @@ std::function<void(const std::string&)> not_empty(const std::string& option) {
   return [option](const std::string& value) {
     if (value.empty()) throw Error(Cause::bad_input, option + " is empty; give it a value, or leave the option out");
   };
+}
+
+std::filesystem::path directory_for(const std::string& file) {
+  const std::filesystem::path stem = std::filesystem::path(file).stem();
+  if (stem.empty() || stem == "." || stem == "..")
+    throw Error(Cause::bad_input, Place{file}, "has no name from which that of a directory could be made",
+                {"name the directory with --out"});
+  return std::filesystem::path("runs") / stem;
 }
 
 std::string in_shell(const std::string& word) {

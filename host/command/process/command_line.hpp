@@ -3,6 +3,7 @@
 #pragma once
 
 #include <boost/program_options.hpp>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ std::function<void(const std::string&)> not_empty(const std::string& option);
 /// The value of an option that is a time above zero: "5min", "1.5 h", or a plain number of seconds. Throws
 /// Error(bad_input).
 double seconds_in(const std::string& option, const std::string& text);
+
+/// Where a command writes that was given this file and no --out: runs/NAME. Throws Error for a file without a name.
+std::filesystem::path directory_for(const std::string& file);
 
 /// A word as a shell reads it: in quotes where it needs them.
 std::string in_shell(const std::string& word);

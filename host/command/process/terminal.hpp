@@ -1,6 +1,7 @@
 // Standard output and standard error of the program, which no plugin can spoil.
 #pragma once
 
+#include <cstddef>
 #include <ostream>
 
 namespace rouleau::command {
@@ -15,6 +16,10 @@ void silence_terminal();
 
 /// Standard output is the descriptor 1 again: for a program that this process becomes.
 void give_terminal_back();
+
+/// Characters in a line of what is printed: COLUMNS, or what the terminal has; at least 40, at most and without either
+/// 100.
+std::size_t text_width();
 
 enum class Colour { red = 31, green = 32, yellow = 33 };
 

@@ -3,7 +3,7 @@
 class View {
   constructor(runs) {
     const names = new Set(runs.flatMap(run => Object.keys(cellColours(run))));
-    Object.assign(this, {field: "", tracers: true, cell: null, hovered: null, follow: false, listeners: [], colour: names.has("aggregate") ? "aggregate" : names.has("tension") && runs[0].surfaces ? "tension" : "grey", before: null});
+    Object.assign(this, {field: "", tracers: true, cell: null, hovered: null, follow: false, listeners: [], colour: ["aggregate", "cell"].find(name => names.has(name)) ?? (names.has("tension") && runs[0].surfaces ? "tension" : "grey"), before: null});
   }
   changed() { for (const listener of this.listeners) listener(); }
   /// Cells are grey over a field, and get their colours back without one.
@@ -135,7 +135,7 @@ class Animation {
     if (cell === null) return;
     const {cells} = this.data, output = this.timeline.output(this.run), value = (name, unit, digits = 3) => typeof cells?.[name]?.[cell]?.[output] === "number" ? `${format(cells[name][cell][output], digits)}${unit}` : null;
     const size = cells ? cells.aggregate[output].filter(label => label === cells.aggregate[output][cell]).length : 1;
-    const rows = [["aggregate", cells && (size > 1 ? `of ${size} cells` : "none")], ["gap", value("min_gap_um", " µm")], ["gap to a wall", value("wall_gap_um", " µm")], ["deformation", value("deformation", "")],
+    const rows = [attracts(this.data) ? ["aggregate", cells && (size > 1 ? `of ${size} cells` : "none")] : ["group of close cells", cells && size > 1 ? `${size} cells` : null], ["gap", value("min_gap_um", " µm")], ["gap to a wall", value("wall_gap_um", " µm")], ["deformation", value("deformation", "")],
       ["angle", value("angle_deg", "°")], ["speed", value("speed_um_per_s", " µm/s")]].filter(([, text]) => text);
     this.tip.replaceChildren(element("p", {class: "name"}, element("b", {}, `cell ${cell}`), cells ? `, ${cells.types[cell]}` : ""),
       element("dl", {}, ...rows.flatMap(([name, text]) => [element("dt", {}, name), element("dd", {}, text)])));

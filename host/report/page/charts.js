@@ -33,7 +33,7 @@ const wholeSteps = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000,
 /// What lies between the 5th and the 95th of a hundred values, with room, where the rest would hide it; else null.
 function usualRange(lines) {
   const values = lines.flatMap(line => line.hidden ? [] : [...line.values, ...(line.band ?? [])]).filter(v => v !== null && v !== undefined);
-  if (values.length < 20) return null;
+  if (values.length < 12) return null;
   const [low, high] = [percentile(values, .05), percentile(values, .95)], spread = high - low;
   return spread > 0 && Math.max(...values) - Math.min(...values) > 3 * spread ? [low - .3 * spread, high + .3 * spread] : null;
 }

@@ -70,6 +70,9 @@ function cellColours(run) {
   const {cells} = run, colours = {}, tonesOf = cells && aggregateTones(cells.aggregate);
   if (!run.outlines) return colours;
   if (cells && cells.types.length > 1) {
+    colours.cell = {title: "cell", tone: cell => lineTones[cell % lineTones.length], bar: () => []};
+  }
+  if (cells && cells.types.length > 1 && attracts(run)) {
     colours.aggregate = {title: "aggregate", tone: (cell, {a, b, share}) => tonesOf[share < .5 ? a : b][cell],
       bar: () => [element("span", {}, "Colour: aggregate"), element("span", {class: "quiet"}, "single cells are grey")]};
   }

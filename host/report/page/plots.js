@@ -23,10 +23,15 @@ const looks = {
   "Kinetic energy of the fluid as simulated": {optional: true, group: "numerics"},
 };
 
+/// What charts of aggregates show where nothing joins cells that are close.
+const withoutAttraction = {"Aggregates, single cells included": "Groups of close cells, single cells included", "Aggregate size, mean over cells": "Size of groups of close cells, mean over cells"};
+
 /// The charts of a page, each {title, unit, table, lines: [{name, label, doc}], and its looks}.
 function quantitiesOf(data) {
   const titles = Object.keys(looks), place = chart => { const i = titles.indexOf(chart.title); return i < 0 ? titles.length : i; };
-  return data.charts.map(chart => ({...chart, ...looks[chart.title]})).sort((a, b) => place(a) - place(b));
+  return data.charts.map(chart => ({...chart, ...looks[chart.title]})).sort((a, b) => place(a) - place(b))
+    .map(chart => chart.title !== "Cell-free layer" || layersAreThere(data.summary?.rheology?.at(-1)?.means) ? chart : {...chart, group: "more"})
+    .map(chart => attracts(data) || !withoutAttraction[chart.title] ? chart : {...chart, title: withoutAttraction[chart.title], group: "more"});
 }
 
 /// The median of all cells and the ends of the middle 80 % of them, by output.
@@ -74,7 +79,7 @@ const multiplied = (values, factor) => factor === 1 || !values ? values : values
 function plots(timeline, parent, {view, events = []}) {
   const missing = [], zero = [], grids = {}, open = 4;
   const grid = name => grids[name] ??= element("div", {class: "charts" + (name === "main" ? " main" : "")});
-  for (const quantity of quantitiesOf(timeline.runs[0])) {
+  for (const quantity of quantitiesOf(timeline.runs.find(run => !attracts(run)) ?? timeline.runs[0])) {
     const lines = linesOf(quantity, timeline.runs);
     if (!lines.some(line => !line.picked)) { if (!quantity.optional && enoughCells(quantity, timeline.runs)) missing.push(quantity.title); continue; }
     // An axis up to 1 would speak of a size that is not there.

@@ -12,15 +12,17 @@ function whenOf(run, position) {
 function meanOf(summary, name) {
   const stage = (summary.rheology || []).findLast(s => typeof s.means?.[name]?.mean === "number");
   if (!stage) return null;
-  const {mean, deviation, trend} = stage.means[name], bar = summary.error_bars?.[name], changes = trend ? `, still ${trend} there` : "";
+  const {mean, error, deviation, trend} = stage.means[name], bar = summary.error_bars?.[name], changes = trend ? `, still ${trend} there` : "";
+  if (typeof deviation !== "number" && typeof bar?.error !== "number") return null;  // a single output is the value of an instant
   return typeof bar?.error === "number" ? {value: bar.value ?? mean, error: bar.error, about: `mean of the stage's second half, ± its measured error${changes}`}
-    : {value: mean, error: null, spread: deviation, about: `mean of the second half of stage ${stage.stage}; standard deviation ${format(deviation, 2)}${changes}`};
+    : {value: mean, error: null, spread: error, about: `mean of the second half of stage ${stage.stage}; its outputs have a standard deviation of ${format(deviation, 2)}; no error bar was measured${changes}`};
 }
 
-/// A value with as many digits as its error, rounded up as the terminal does, has a meaning for: "0.347 ± 0.005"; without an error as many as its spread has.
+/// A value with as many digits as its error, rounded up as the terminal does, has a meaning for: "0.347 ± 0.005"; without an
+/// error three, or fewer where its `spread` says so.
 function withError(value, error, spread = null) {
-  const known = error > 0 ? error : spread;
-  if (!(known > 0)) return format(value, 3);
+  const known = error > 0 ? error : Math.max(spread ?? 0, value ? 10 ** (Math.floor(Math.log10(Math.abs(value))) - 2) : 0);
+  if (!(error > 0) && (!(spread > 0) || known > spread || Math.abs(value) < 1e-3 || Math.abs(value) >= 1e6)) return format(value, 3);
   const size = Math.floor(Math.log10(known)), decimals = Math.max(0, Math.min(8, 1 - size - (known / 10 ** size >= 2 ? 1 : 0)));
   const up = Math.ceil(known * 10 ** decimals * (1 - 1e-12)) / 10 ** decimals;
   return (error > 0 ? `${value.toFixed(decimals)} ± ${up.toFixed(decimals)}` : value.toFixed(decimals)).replace("-", "−");
@@ -28,7 +30,7 @@ function withError(value, error, spread = null) {
 
 /// What the aggregates did: {sentences, numbers}, of runs with two cells or more.
 function aggregation(run) {
-  const history = [...((run.summary || {}).aggregate_history || [])].filter(h => Array.isArray(h.members)), cells = run.cells?.types.length ?? 0, at = h => outputAt(run, h.time_s), sentences = [], numbers = [];
+  const history = joinHistory(run), cells = run.cells?.types.length ?? 0, at = h => outputAt(run, h.time_s), sentences = [], numbers = [];
   if (cells < 2 || !history.length) return {sentences, numbers};
   const largest = h => Math.max(...h.members.map(m => m.length)), began = history[0], last = history.at(-1), number = (value, label, h, about) => numbers.push({value, label, about, position: at(h)});
   const most = history.reduce((best, h) => largest(h) > largest(best) || (largest(h) === largest(best) && h.count < best.count) ? h : best), size = largest(most), when = h => whenOf(run, at(h));
@@ -36,7 +38,7 @@ function aggregation(run) {
   const all = size === cells, name = all ? `${cells === 2 ? "both" : `all ${cells}`} cells` : `${size} of ${cells} cells`;
   if (most === began) sentences.push(`${capital(name)} were together from the start`);
   else { sentences.push(`${capital(name)} joined at ${when(most)}`); number(when(most), all ? "all cells joined" : `largest aggregate (${size} cells)`, most, "the first output at which they are one aggregate"); }
-  const later = history.slice(history.indexOf(most) + 1), broke = later.find(h => h.count > most.count && largest(h) < size);
+  const later = history.slice(history.indexOf(most) + 1), broke = later.find(h => (h.count > most.count && largest(h) < size) || (size === 2 && h.met_images?.some(pair => String(pair) === String(most.members.find(m => m.length === 2)))));
   if (!broke) { sentences[0] += " and stayed together."; if (history.length === 1) number(String(last.members.filter(m => m.length > 1).length), last.members.filter(m => m.length > 1).length === 1 ? "rouleau" : "rouleaux", last, "aggregates of two cells or more"); return {sentences, numbers}; }
   number(when(broke), "first break", broke, "the first output at which that aggregate has come apart");
   const end = largest(last) === 1;
@@ -56,16 +58,19 @@ function resultOf(run) {
     numbers.push({value, label: cells > 1 ? "mean deformation at the end" : "deformation at the end", about: "(L − B)/(L + B) of the ellipses with the cells' second moments"});
     if (cells === 1) sentences.push(`The cell's deformation is ${value} at the end.`);
   }
+  const angle = run.cells?.angle_deg?.[0]?.at(-1);
+  if (cells === 1 && typeof angle === "number") numbers.push({value: `${withError(angle, (bars.angle_rad?.error ?? 0) * 180 / Math.PI)}°`, label: "angle of the long axis at the end", about: "against the flow, counter-clockwise"});
   const turns = (summary.rheology || []).at(-1)?.rotation?.[0];
-  if (cells === 1 && turns?.turns > 0) numbers.push({value: format(Math.abs(turns.tank_treading_rad_per_strain), 3), label: "tank-treading, rad per strain", about: `over ${turns.turns} whole turns of the outline`});
-  const flow = meanOf(summary, "flow_rate_m2_per_s");
-  if (flow) numbers.push({value: `${format(flow.value, 3)} m²/s`, label: "flow rate per depth", about: flow.about});
-  if (!cells && flow) sentences.push(`The fluid flows at ${format(flow.value, 3)} m²/s per depth.`);
+  if (cells === 1 && turns?.turns >= 1) numbers.push({value: format(Math.abs(turns.tank_treading_rad_per_strain), 3), label: "tank-treading, rad per strain", about: `over ${turns.turns} whole turns of the outline`});
+  const flow = meanOf(summary, "flow_rate_m2_per_s"), speed = meanOf(summary, "mean_velocity_m_per_s"), depth = run.surfaces?.size_um[2] ?? run.domain?.size_um[2];
+  if (speed) numbers.push({value: `${withError(1e6 * speed.value, 1e6 * speed.error, 1e6 * speed.spread)} µm/s`, label: "mean velocity", about: speed.about});
+  if (flow && summary.dimensions !== 3) numbers.push({value: `${format(flow.value, 3)} m²/s`, label: "flow rate per depth", about: flow.about});
+  if (flow && summary.dimensions === 3 && depth) numbers.push({value: `${format(flow.value * depth * 1e-6, 3)} m³/s`, label: "flow rate", about: flow.about});
+  if (!cells && speed) sentences.push(`The fluid flows at ${withError(1e6 * speed.value, 1e6 * speed.error, 1e6 * speed.spread)} µm/s on average.`);
   const layer = ["cell_free_layer_lower_m", "cell_free_layer_upper_m"].map(name => meanOf(summary, name)?.value).filter(v => typeof v === "number");
-  if (cells > 4 && layer.length) numbers.push({value: `${format(1e6 * layer.reduce((a, b) => a + b) / layer.length, 3)} µm`, label: "cell-free layer", about: "mean of both walls over the second half of the last stage"});
+  if (layer.length && layersAreThere(summary.rheology.at(-1).means)) numbers.push({value: `${format(1e6 * layer.reduce((a, b) => a + b) / layer.length, 3)} µm`, label: "cell-free layer", about: "mean of both walls over the second half of the last stage"});
   if (typeof summary.conservation?.area_drift_max === "number" && cells) numbers.push({value: `${format(100 * summary.conservation.area_drift_max, 2)} %`, label: `largest ${summary.dimensions === 3 ? "volume" : "area"} drift`, about: "of any cell at any time: a measure of the error"});
-  const mach = summary.dimensionless?.mach_max;
-  if (typeof mach === "number") numbers.push({value: format(mach, 2), label: "largest Mach number", about: "of the lattice; errors grow with its square"});
+  if (numbers.length && run.summary && !Object.keys(bars).length) sentences.push("No error bars were measured (rouleau run --error-bar).");
   if (!sentences.length) sentences.push(cells ? `${cells} ${cells === 1 ? "cell" : "cells"}, ${whenOf(run, run.step.length - 1)} at the end.` : "The fluid alone was simulated.");
   return {sentences, numbers};
 }

@@ -60,7 +60,7 @@ function showResults(timeline, run) {
     if (run.surfaces) { card.append(drawn); new SpaceView(drawn.firstChild, timeline, 0, view); }
     const animation = timeline.animation = new Animation(drawn.lastChild ?? drawn, timeline, 0, view), [first, second] = animationControls(timeline, [animation], view, [storyStrip(timeline, events)]);
     card.append(first, instantLine(timeline, 0), second, ...failureNote(run), ...whyNoAnimation(run));
-    if (run.surfaces) card.append(note("The surfaces: drag to turn, wheel or + and − to come closer; a cut across an axis opens the cells. The outlines: every cell cut by the plane across z through its own middle."));
+    if (run.surfaces) card.append(note("The surfaces: drag, or two fingers, to turn; Ctrl and the wheel, or + and −, to come closer; a cut across an axis opens the cells. The outlines: every cell cut by the plane across z through its own middle."));
   } else if (run.shown.note) box.append(element("div", {class: "card"}, ...whyNoAnimation(run)));
   section("Charts", axisControls(timeline), note("Point at a chart to go to that instant, drag across it to look closer, click a name to hide its line, a tick above to go to an event."));
   const notes = plots(timeline, page, {view, events});
@@ -72,7 +72,7 @@ function showTables(run) {
   const summary = run.summary || {}, margins = (summary.limits || []).map(l => l.margin).filter(m => typeof m === "number"), least = Math.min(...margins);
   const mark = margins.length && least < 1.5 ? {text: `${format(least, 3)} ×`, kind: least < 1 ? "bad" : "warn"} : null;
   tabs([
-    {title: "Result", fill: () => { showHistory(summary); showErrorBars(summary); }},
+    {title: "Result", fill: () => { showHistory(run, summary); showErrorBars(summary); }},
     {title: "Physics", fill: () => { showDimensionless(summary.dimensionless || {}); showScene(run); }},
     {title: "Numerics", mark, fill: () => {
       showLimits(summary.limits || []);

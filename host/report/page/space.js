@@ -63,8 +63,8 @@ const rgbOf = (() => {
   };
 })();
 
-/// The surfaces of a run at the timeline's instant, in their box. Drag or arrow keys turn it, the wheel, two fingers, + and -
-/// come closer, 0 is where it began. A plane across one axis cuts them open: what lies between it and the eye is left out.
+/// The surfaces of a run at the timeline's instant, in their box. Drag, two fingers or arrow keys turn it; Ctrl and the wheel, fingers that
+/// part, + and - come closer, 0 is where it began. A wheel or a finger alone belongs to the page. A plane across one axis cuts them open: what lies between it and the eye is left out.
 class SpaceView {
   static start = {azimuth: -.5, elevation: .35, distance: .85};
   static uncut = [0, 0, 0, 1];
@@ -156,18 +156,25 @@ class SpaceView {
   }
   zoomBy(factor) { this.distance = Math.min(4, Math.max(.1, this.distance / factor)); this.draw(); }
   listen() {
-    const {canvas} = this, held = new Map(), apart = () => { const [[ax, ay], [bx, by]] = [...held.values()]; return Math.hypot(ax - bx, ay - by); };
-    canvas.style.touchAction = "none";
-    canvas.addEventListener("pointerdown", event => { held.set(event.pointerId, [event.clientX, event.clientY]); canvas.setPointerCapture(event.pointerId); });
+    const {canvas} = this;
+    let held = null, fingers = null;
+    canvas.style.touchAction = "pan-x pan-y";
+    canvas.addEventListener("pointerdown", event => { if (event.pointerType !== "touch") { held = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); } });
     canvas.addEventListener("pointermove", event => {
-      const before = held.get(event.pointerId);
-      if (!before) return;
-      const spread = held.size === 2 ? apart() : 0;
-      held.set(event.pointerId, [event.clientX, event.clientY]);
-      if (spread) this.zoomBy(apart() / spread); else this.turn((event.clientX - before[0]) / 150, (event.clientY - before[1]) / 150);
+      if (!held || event.pointerType === "touch") return;
+      this.turn((event.clientX - held[0]) / 150, (event.clientY - held[1]) / 150);
+      held = [event.clientX, event.clientY];
     });
-    for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, event => held.delete(event.pointerId));
-    canvas.addEventListener("wheel", event => { event.preventDefault(); this.zoomBy(Math.exp(-event.deltaY / 500)); }, {passive: false});
+    for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, () => { held = null; });
+    canvas.addEventListener("touchmove", event => {
+      if (event.touches.length !== 2) return;
+      event.preventDefault();  // or the page would scroll
+      const [a, b] = event.touches, now = {x: (a.clientX + b.clientX) / 2, y: (a.clientY + b.clientY) / 2, apart: Math.max(1, Math.hypot(a.clientX - b.clientX, a.clientY - b.clientY))};
+      if (fingers) { this.turn((now.x - fingers.x) / 150, (now.y - fingers.y) / 150); this.zoomBy(now.apart / fingers.apart); }
+      fingers = now;
+    }, {passive: false});
+    for (const kind of ["touchstart", "touchend", "touchcancel"]) canvas.addEventListener(kind, () => { fingers = null; });
+    canvas.addEventListener("wheel", event => { if (event.ctrlKey || event.metaKey) { event.preventDefault(); this.zoomBy(Math.exp(-event.deltaY / 500)); } }, {passive: false});
     canvas.addEventListener("keydown", event => {
       const act = {ArrowLeft: () => this.turn(.1, 0), ArrowRight: () => this.turn(-.1, 0), ArrowUp: () => this.turn(0, .1), ArrowDown: () => this.turn(0, -.1), "+": () => this.zoomBy(1.25), "-": () => this.zoomBy(.8),
         "0": () => { Object.assign(this, SpaceView.start); this.draw(); }}[event.key];

@@ -4,10 +4,17 @@ const groupWords = members => members.map(m => m.join("+")).join(", ");
 /// The first output at a time of summary.json or after it; -1: there is none. Times of the page have nine digits.
 const outputAt = (run, time) => run.time_s.findIndex(t => t >= time * (1 - 1e-8));
 
+/// Whether cells attract each other, so that those that are close are joined. A run without a summary does not say.
+const attracts = run => (run.summary?.contacts?.attracting ?? []).length > 0;
+/// Whether so few columns are empty that the cell-free layers are no property of the box.
+const layersAreThere = means => (means?.cell_free_layer_empty?.mean ?? 1) < .05;
+/// The changes of who is joined: none where nothing attracts.
+const joinHistory = run => attracts(run) ? (run.summary.aggregate_history ?? []).map(h => h.joined ? {...h, members: h.joined, count: h.joined.length} : h).filter(h => Array.isArray(h.members)) : [];
+
 /// The changes of the aggregates without those that were undone within three outputs: cells at the edge of
 /// output.aggregate_gap flicker. {count, members, time_s, strain} each, the first is how the run began.
 function lastingHistory(run) {
-  const history = [...((run.summary || {}).aggregate_history || [])].filter(h => Array.isArray(h.members)), key = h => JSON.stringify(h.members);
+  const history = joinHistory(run), key = h => JSON.stringify(h.members);
   const place = h => outputAt(run, h.time_s);
   for (let i = 1; i + 1 < history.length;) {
     if (key(history[i - 1]) === key(history[i + 1]) && place(history[i + 1]) - place(history[i]) <= 3) { history.splice(i, 2); i = Math.max(1, i - 1); } else ++i;

@@ -49,15 +49,17 @@ function lineContent(view) {
   const axis = errorAxis(view, content.drawn);
   const x = named ? {title: line.name, names: line.labels}
     : {title: line.name, values: line.positions, ticks: line.labels.map((text, i) => ({value: line.positions[i], text})).sort((a, b) => a.value - b.value)};
-  return {...content, ...axis, x, slopes: named ? [] : slopesOf(content.drawn), title: `${errorTitle(view)}, against ${line.name}`, rings: view.rings};
+  return {...content, ...axis, x, slopes: named ? [] : slopesOf(content), title: `${errorTitle(view)}, against ${line.name}`, rings: view.rings};
 }
 
-/// Lines of first and second order through the middle of the errors at the coarse end; there the errors are larger.
-function slopesOf(drawn) {
+/// Lines of first and second order from the middle of the errors at the coarse end: where the lines of most methods are higher.
+/// Errors of different methods say nothing of that.
+function slopesOf({lines, drawn}) {
   const positive = drawn.filter(p => p.y > 0), xs = [...new Set(positive.map(p => p.x))].sort((a, b) => a - b);
-  if (xs.length < 2) return [];
-  const middle = x => median(positive.filter(p => p.x === x).map(p => p.y)), rises = middle(xs.at(-1)) > middle(xs[0]);
-  const [coarse, fine] = rises ? [xs.at(-1), xs[0]] : [xs[0], xs.at(-1)], sign = rises ? 1 : -1;
+  const ends = lines.map(line => line.points.filter(p => p?.y > 0).sort((a, b) => a.x - b.x)).filter(points => points.length > 1 && points[0].x < points.at(-1).x);
+  const sign = Math.sign(ends.reduce((sum, points) => sum + Math.sign(points.at(-1).y - points[0].y), 0));
+  if (xs.length < 2 || !sign) return [];
+  const middle = x => median(positive.filter(p => p.x === x).map(p => p.y)), [coarse, fine] = sign > 0 ? [xs.at(-1), xs[0]] : [xs[0], xs.at(-1)];
   return [1, 2].map(order => ({from: {x: coarse, y: middle(coarse)}, to: {x: fine, y: middle(coarse) * (fine / coarse) ** (sign * order)}, text: `order ${order}`}));
 }
 function median(values) { const sorted = [...values].sort((a, b) => a - b); return sorted[sorted.length >> 1]; }

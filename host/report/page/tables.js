@@ -94,18 +94,24 @@ function showConservation(summary) {
     Object.entries(summary.conservation).map(([name, value]) => ({name: spelled(name), value}))));
 }
 
-function showHistory(summary) {
-  const history = summary.aggregate_history || [];
+function showHistory(run, summary) {
+  const history = attracts(run) ? joinHistory(run) : summary.aggregate_history || [], gap = summary.contacts?.close_below_m;
+  const title = attracts(run) ? "Aggregates" : `Cells that are close${gap ? ` (gaps below ${format(1e6 * gap, 3)} µm)` : ""}; nothing joins them`;
   const folded = rows => history.length > 12 ? element("details", {}, element("summary", {}, `All ${history.length} changes`), rows) : rows;
-  if (history.length && history[0].members?.flat().length !== 1) section("Aggregates", folded(table([{title: "Strain", key: "strain", number: true}, {title: "Time, s", key: "time_s", number: true}, {title: "Count", key: "count", number: true},
+  if (history.length && history[0].members?.flat().length !== 1) section(title, folded(table([{title: "Strain", key: "strain", number: true}, {title: "Time, s", key: "time_s", number: true}, {title: "Count", key: "count", number: true},
     {title: "Members", value: r => (r.members || []).map(m => m.join("+")).join(" | ")}, {title: "Connected across the periodic boundary", value: r => r.through_image ? "yes" : "no"}], history.slice(0, 200), {stacked: true})),
     ...(history.length > 200 ? [note(`The first 200 of ${history.length} changes; summary.json has all.`)] : []));
-  const means = [...(summary.rheology || [])].reverse().flatMap(stage => Object.entries(stage.means || {}).filter(([, v]) => v && typeof v === "object" && typeof v.mean === "number")
-    .map(([name, {mean, deviation, trend}]) => name.endsWith("_m") ? {name: name.replace(/_m$/, "_um"), mean: 1e6 * mean, deviation: 1e6 * deviation, trend} : {name, mean, deviation, trend})
-    .map(row => ({...row, stage: stage.stage, mean: format(row.mean), deviation: format(row.deviation, 2)})));
-  if (means.length) section("Means", table([{title: "Quantity", value: r => spelled(r.name)}, {title: "Stage", key: "stage"}, {title: "Mean", key: "mean", number: true}, {title: "Standard deviation", key: "deviation", number: true},
+  const stages = summary.rheology || [], largest = name => Math.max(...stages.map(stage => Math.abs(stage.means?.[name]?.mean ?? 0)));
+  const isResult = (means, name) => (attracts(run) || !name.startsWith("aggregate")) && (!name.startsWith("cell_free") || (!name.endsWith("empty") && layersAreThere(means)))
+    && Math.abs(means[name].mean) >= 1e-9 * largest(name);  // below is rounding, of walls at rest for example
+  const means = [...stages].reverse().flatMap(stage => Object.entries(stage.means || {}).filter(([, v]) => v && typeof v === "object" && typeof v.mean === "number")
+    .filter(([name]) => isResult(stage.means, name)).map(([name, {mean, error, deviation, trend}]) => {
+      const {title, factor} = drawnAs(name), scaled = v => typeof v === "number" ? format(factor * v, 2) : "–";
+      return {title, trend, stage: stage.stage, mean: withError(factor * mean, null, factor * (error ?? 0)), error: scaled(error), deviation: scaled(deviation)};
+    }));
+  if (means.length) section("Means", table([{title: "Quantity", key: "title"}, {title: "Stage", key: "stage"}, {title: "Mean", key: "mean", number: true}, {title: "Standard error", key: "error", number: true}, {title: "Standard deviation", key: "deviation", number: true},
     ...(means.some(r => r.trend) ? [{title: "Trend", value: r => r.trend ? `still ${r.trend}` : ""}] : [])], means, {stacked: true}),
-    note("Means in time over the second half of each stage, standard deviations of its outputs. What still rises or falls there is not steady."));
+    note("Means in time over the second half of each stage; standard errors from four equal parts of it, which know nothing of the lattice; standard deviations of its outputs. What still rises or falls there is not steady."));
 }
 
 function showProvenance(run) {

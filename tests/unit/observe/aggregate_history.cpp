@@ -62,6 +62,34 @@ TEST_CASE("of many cells the first and the last event alone keep who is joined t
   CHECK(history.rouleaux() == 1);
 }
 
+TEST_CASE("only contacts of attracting types join cells, and a pair that meets through an image has parted") {
+  Snapshot both = snapshot({0, 0, 0});
+  both.cells[0].type = both.cells[1].type = "rbc";
+  both.cells[2].type = "platelet";
+  const auto touching = [](int a, int b, int image) { return ContactSnapshot{a, b, {image, 0, 0}, 1e-7, 1e-6}; };
+  both.contacts = {touching(0, 1, 0), touching(1, 2, 0)};
+  AggregateHistory mixed, repelling;
+  mixed.follow(both, {{"rbc", "rbc"}});
+  repelling.follow(both);
+  CHECK(mixed.events()[0].together() == std::vector<std::vector<int>>{{0, 1}, {2}});
+  CHECK(mixed.rouleaux() == 1);
+  CHECK(repelling.events()[0].joined.empty());
+  // The other order of the types is the same pair of them; a contact of a cell with its own image joins nothing.
+  AggregateHistory turned;
+  both.contacts.push_back(touching(2, 2, 1));
+  turned.follow(both, {{"platelet", "rbc"}});
+  CHECK(turned.events()[0].together() == std::vector<std::vector<int>>{{0}, {1, 2}});
+
+  both.contacts[0].image = {-1, 0, 0};
+  mixed.follow(both, {{"rbc", "rbc"}});
+  REQUIRE(mixed.events().size() == 2);
+  CHECK(mixed.events()[1].met_images == std::vector<std::array<int, 2>>{{0, 1}});
+  both.contacts.push_back(touching(0, 1, 0));  // by both images at once: it has not parted
+  mixed.follow(both, {{"rbc", "rbc"}});
+  CHECK(mixed.events().size() == 2);
+  CHECK(nlohmann::json(mixed).get<AggregateHistory>().events().size() == 2);
+}
+
 TEST_CASE("aggregates are said as rouleaux and single cells") {
   using rouleau::observe::aggregates_in_words;
   CHECK(aggregates_in_words({1, 1, 1, 1}) == "4 single cells");

@@ -46,6 +46,7 @@ TEST_CASE("the layer without cells is the mean distance from the wall to the nea
   // 10 columns without a cell count half the height, 7 meet the first box, 3 the second.
   CHECK(layer.lower == Approx((10 * 20 + 7 * 5.5 + 3 * 3.75) / 20).epsilon(1e-14));
   CHECK(layer.upper == Approx(20).epsilon(1e-14));
+  CHECK(layer.empty == Approx(0.5).epsilon(1e-14));
 }
 
 TEST_CASE("the layer without cells does not depend on where the box is cut") {

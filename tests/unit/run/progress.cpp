@@ -37,6 +37,15 @@ TEST_CASE("a terminal of 80 columns has a bar, and its numbers stay in their pla
   CHECK(early == "shear [                       ]    0%  ETA      59 s  strain  0.00   0 rouleaux");
 }
 
+TEST_CASE("where nothing attracts there is no word of rouleaux, and in three dimensions a volume drifts") {
+  ProgressState close = state;
+  close.rouleaux = -1;
+  close.in_space = true;
+  const std::string line = progress_line(close, 12345, 65, 150);
+  CHECK(!shows(line, "rouleau"));
+  CHECK(shows(line, "volume drift"));
+}
+
 TEST_CASE("what is not known yet does not spoil a line of progress") {
   const double none = std::numeric_limits<double>::quiet_NaN();
   const std::string line = progress_line({0, none, "shear", 0, none, none, 1}, 0, none, 120);
