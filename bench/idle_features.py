@@ -40,6 +40,7 @@ class Counter:
 
     def __init__(self, build: Path, folder: Path, pool: concurrent.futures.Executor):
         self.build, self.folder, self.pool = build, folder, pool
+        folder.mkdir()
 
     def scene(self, name: str, scene: dict, apart: tuple = ()) -> Callable[[], float]:
         file = self.folder / f"{name}.json"
@@ -54,9 +55,9 @@ class Counter:
         header, data = rows[0].split(","), [row.split(",") for row in rows[1:] if not row.startswith("#")]
         return len({row[header.index("step")] for row in data})
 
-    def kernel(self, name: str) -> Callable[[], float]:
+    def kernel(self, name: str, more: tuple) -> Callable[[], float]:
         return self.per_step(lambda steps: instructions(
-            [self.build / "bin/rouleau-bench", "--kernel", name, "--steps", steps]))
+            [self.build / "bin/rouleau-bench", "--kernel", name, "--steps", steps, *more]))
 
     def per_step(self, count: Callable[[int], int]) -> Callable[[], float]:
         more, few = self.pool.submit(count, MORE), self.pool.submit(count, FEW)
@@ -67,52 +68,65 @@ def without(scene: dict, *keys: str) -> dict:
     return {key: value for key, value in copy.deepcopy(scene).items() if key not in keys}
 
 
+# Every run writes its first and its last state, and reads them for its report; how well they compress depends on the
+# state.
+DUE = ("*Observer::observe<*", "*RunDirectory::write(*", "*RunDirectory::finish(*", "*report::write_report(*")
+CUBE = ("--cube", 32)  # of the bare fluid in three dimensions
+
+
+def comparisons(count: Counter, full: dict, bare: tuple) -> list:
+    """Of a scene with cells, walls and an interaction: feature, idle, without it, in use."""
+    # Walls move, cells are in reach.
+    full["stages"] = [{**stage, "strain": 15} for stage in full["stages"] if "shear_rate" in stage]
+    quiet = without(full, "output")
+    equal, unnamed, shallow, often = (copy.deepcopy(scene) for scene in (quiet, quiet, quiet, full))
+    equal["cell_types"]["rbc"]["interior_viscosity"] = equal["fluid"]["viscosity"]
+    del unnamed["cell_types"]["rbc"]["interior_viscosity"]
+    shallow["interactions"][0]["parameters"]["depth"] = "0 J/m2"
+    full["output"] = {"cells": {"strain": 15}, "fields": {"strain": 15, "quantities": ["velocity"]}}
+    often["output"] = {"cells": {"strain": 0.005}, "fields": {"strain": 0.005, "quantities": ["velocity"]}}
+    fluid = without(quiet, "cells", "cell_types", "interactions")
+    if bare:  # the bench's cube, which has no walls
+        fluid["domain"] = {"size": ["16 um"] * 3, "nodes": [bare[1]] * 3, "y": "periodic"}
+        fluid["stages"] = [{"name": "rest", "duration": "1 s"}]
+    active = count.scene("full", quiet)
+    return [
+        ("cells left out; bare fluid benchmark", count.scene("fluid", fluid), count.kernel("plugin", bare), active),
+        ("equal viscosities; none named", count.scene("equal", equal), count.scene("unnamed", unnamed), active),
+        ("interaction of zero depth; no interaction", count.scene("shallow", shallow),
+         count.scene("alone", without(quiet, "interactions")), active),
+        ("output not due; none asked for", count.scene("output", full, DUE), count.scene("none", quiet, DUE),
+         count.scene("often", often))]
+
+
+def report(rows: list) -> bool:
+    """Prints the comparisons; whether nothing idle costs anything."""
+    sound = True
+    print(f"{'idle feature; compared with':45} {'idle':>12} {'without':>12} {'ratio':>9} {'in use':>12}")
+    for feature, *costs in rows:
+        idle, without_it, in_use = (cost() for cost in costs)
+        passed = abs(idle / without_it - 1) <= LIMIT
+        sound &= passed
+        print(f"{feature:45} {idle:12.0f} {without_it:12.0f} {idle / without_it:9.5f} {in_use:12.0f} "
+              f"{'' if passed else 'beyond 1 %'}", flush=True)
+    print()
+    return sound
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=Path, default=HERE.parent / "build/release", help="build tree with the programs")
     arguments = parser.parse_args()
 
-    full = json.loads((HERE.parent / "scenes/four-cells-shear.json").read_text())
-    full["stages"] = [{"name": "shear", "shear_rate": "20 1/s", "strain": 15}]  # walls move, cells are in reach
-    quiet = without(full, "output")
-    rows, failed = [], False
-
-    equal, unnamed = copy.deepcopy(quiet), copy.deepcopy(quiet)
-    equal["cell_types"]["rbc"]["interior_viscosity"] = equal["fluid"]["viscosity"]
-    del unnamed["cell_types"]["rbc"]["interior_viscosity"]
-    shallow = copy.deepcopy(quiet)
-    shallow["interactions"][0]["parameters"]["depth"] = "0 J/m2"
-    often = copy.deepcopy(full)
-    often["output"]["fields"]["strain"] = often["output"]["cells"]["strain"] = 0.005
-    # Every run writes its first and its last state, and reads them for its report; how well they compress depends on
-    # the state.
-    due = ("*Observer::observe<*", "*RunDirectory::write(*", "*RunDirectory::finish(*", "*report::write_report(*")
-
+    failed = False
     with (tempfile.TemporaryDirectory() as folder,
           concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool):
-        count = Counter(arguments.build.resolve(), Path(folder), pool)
-        active = count.scene("full", quiet)
-        comparisons = [  # feature, idle, without it, in use
-            ("cells left out; bare fluid benchmark",
-             count.scene("fluid", without(quiet, "cells", "cell_types", "interactions")), count.kernel("plugin"), active),
-            ("equal viscosities; none named", count.scene("equal", equal), count.scene("unnamed", unnamed), active),
-            ("interaction of zero depth; no interaction", count.scene("shallow", shallow),
-             count.scene("alone", without(quiet, "interactions")), active),
-            ("output not due; none asked for", count.scene("output", full, due), count.scene("none", quiet, due),
-             count.scene("often", often))]
-        for feature, *costs in comparisons:
-            idle, without_it, in_use = (cost() for cost in costs)
-            ratio = idle / without_it
-            passed = abs(ratio - 1) <= LIMIT
-            failed |= not passed
-            rows.append((feature, idle, without_it, ratio, in_use, "" if passed else "beyond 1 %"))
-        if count.outputs("output") != 2:
-            raise SystemExit("idle_features: outputs came due while the idle scene was counted")
-
-    print("Instructions per step, four-cells-shear.json and what is left of it, AVX2, f64\n")
-    print(f"{'idle feature; compared with':45} {'idle':>12} {'without':>12} {'ratio':>9} {'in use':>12}")
-    for feature, idle, without_it, ratio, in_use, verdict in rows:
-        print(f"{feature:45} {idle:12.0f} {without_it:12.0f} {ratio:9.5f} {in_use:12.0f} {verdict}")
+        for dimension, file, bare in ((2, "scenes/four-cells-shear.json", ()), (3, "limits/scenes/two-cells-3d.json", CUBE)):
+            print(f"Instructions per step, {file} and what is left of it, AVX2, f64\n")
+            count = Counter(arguments.build.resolve(), Path(folder) / str(dimension), pool)
+            failed |= not report(comparisons(count, json.loads((HERE.parent / file).read_text()), bare))
+            if count.outputs("output") != 2:
+                raise SystemExit("idle_features: outputs came due while the idle scene was counted")
     return 1 if failed else 0
 
 

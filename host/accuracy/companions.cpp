@@ -14,6 +14,7 @@
 #include "plan/stability_limits.hpp"
 #include "plan/stage_scales.hpp"
 #include "scene/driving_flow.hpp"
+#include "shape/extent.hpp"
 #include "shape/outline.hpp"
 
 namespace rouleau::accuracy {
@@ -116,19 +117,13 @@ void set_density(Json& scene, double factor) {
   }
 }
 
-/// Triangles of a surface whose edges are so many times longer: 20 n^2.
-int fewer_triangles(int triangles, double coarser) {
-  const int n = std::max(1, static_cast<int>(std::lround(std::sqrt(triangles / 20.0) / coarser)));
-  return 20 * n * n;
-}
-
 Json on_lattice(const scene::Scene& scene, const LatticeSize& nodes) {
   Json changed = scene.document->root();
   const double coarser = static_cast<double>(scene.domain.nodes[1]) / nodes[1];
   changed["domain"]["nodes"] = nodes;
   for (const scene::CellType& type : scene.cell_types) {
     Json& cell = changed["cell_types"][type.name];
-    if (scene.domain.depth && type.triangles > 0) cell["triangles"] = fewer_triangles(type.triangles, coarser);
+    if (scene.domain.depth && type.triangles > 0) cell["triangles"] = shape::divided_triangles(type.triangles, coarser);
     if (!scene.domain.depth) cell["segments"] = std::max(8L, std::lround(type.segments / coarser));
   }
   if (!changed.contains("numerics") || !changed["numerics"].is_object()) changed["numerics"] = Json::object();

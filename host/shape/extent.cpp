@@ -1,5 +1,6 @@
 #include "extent.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "outline.hpp"
@@ -22,6 +23,11 @@ double enclosed_by(const scene::CellType& type) {
 }
 
 int surface_nodes(int triangles) { return triangles / 2 + 2; }
+
+int divided_triangles(int triangles, double coarser) {
+  const int n = static_cast<int>(std::clamp(std::round(std::sqrt(triangles / 20.0) / coarser), 1.0, 1e4));
+  return 20 * n * n;
+}
 
 double node_count(const scene::CellType& type) {
   if (!is_surface(type)) return type.segments;

@@ -9,6 +9,8 @@ namespace rouleau::shape {
 double enclosed_by(const scene::CellType& type);
 /// Nodes of a closed surface without holes, by Euler's formula.
 int surface_nodes(int triangles);
+/// Triangles of a divided icosahedron, 20 n^2, whose edges are so many times longer than with `triangles`.
+int divided_triangles(int triangles, double coarser);
 /// Nodes of its membrane.
 double node_count(const scene::CellType& type);
 /// Mean length of its segments, or of its edges, m.

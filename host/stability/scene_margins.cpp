@@ -16,6 +16,7 @@ namespace rouleau::stability {
 namespace {
 
 using Json = nlohmann::json;
+using namespace nlohmann::literals;
 
 /// The parameter's value in a scene, in its unit; nothing where the scene does not have it.
 std::optional<double> value_in(const Json& scene, const LimitsParameter& parameter) {
@@ -79,7 +80,8 @@ Json margin_of(const std::filesystem::path& file, const LimitsState& state, Sear
                 {"why_not", nullptr}};
   const Json scene = json::Document::read(file).root();
   const std::optional<double> value = value_in(scene, parameter);
-  if (!value) return nullptr;
+  const auto dimensions = [](const Json& of) { return of.value("/domain/size"_json_pointer, Json()).size(); };
+  if (!value || dimensions(scene) != dimensions(state.limits->scene)) return nullptr;
   entry["value"] = *value;
   const scene::Scene read = plan::read_unpacked_scene(file).scene;
   double least = INFINITY;

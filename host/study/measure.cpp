@@ -26,36 +26,41 @@ Measured defined_or(double value, const std::string& why_not) {
   return std::isfinite(value) ? Measured{value, 0, ""} : undefined_because(why_not);
 }
 
-/// Rows of a table as columns, of one cell or (negative) all that there are.
-struct Rows {
-  Column strain, time;
-};
+using Combine = double (*)(double, double);
+double latest(double, double next) { return next; }
+double least(double so_far, double next) { return std::min(so_far, next); }
+double sum(double so_far, double next) { return std::isnan(next) ? so_far : so_far + next; }
 
-struct CellRows : Rows {
-  const files::StoredTable& table;
-  std::vector<std::size_t> rows;
+/// What a column of a table has at each output: of the rows of one cell or, where that is negative, of all rows.
+struct Outputs {
+  Column strain, time, values;
 
-  CellRows(const files::StoredTable& cells, int cell) : table(cells) {
-    const Column number = cells.numbers("cell");
-    for (std::size_t i = 0; i < number.size(); ++i)
-      if (number[i] == cell) rows.push_back(i);
-    strain = of("strain");
-    time = of("time_s");
-  }
-  [[nodiscard]] Column of(const std::string& column) const {
-    const Column all = table.numbers(column);
-    Column chosen;
-    for (const std::size_t i : rows) chosen.push_back(all[i]);
-    return chosen;
+  Outputs(const files::StoredTable& table, const std::string& column, int cell, Combine combine = latest,
+          double start = 0) {
+    const Column step = table.numbers("step"), all = table.numbers(column);
+    const Column all_strain = table.numbers("strain"), all_time = table.numbers("time_s");
+    const Column number_of = cell < 0 ? Column() : table.numbers("cell");
+    double last = -1;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (cell >= 0 && number_of[i] != cell) continue;
+      if (step[i] != last) {
+        strain.push_back(all_strain[i]);
+        time.push_back(all_time[i]);
+        values.push_back(start);
+      }
+      values.back() = combine(values.back(), all[i]);
+      last = step[i];
+    }
   }
 };
 
 /// The value of a column when it is due.
-Measured taken(const Rows& rows, const Column& values, const When& when) {
+Measured taken(const Outputs& rows, const When& when) {
+  const Column& values = rows.values;
   if (values.empty()) return undefined_because("the run has no output");
   const std::string nothing = "it is not defined at that instant";
   if (when.kind == When::Kind::end) return defined_or(values.back(), "it is not defined at the end of the run");
-  const bool by_time = when.kind == When::Kind::time;
+  const bool by_time = when.kind == When::Kind::time || when.kind == When::Kind::mean_from_time;
   const Column& x = by_time ? rows.time : rows.strain;
   // A stage ends on a whole step, which may lie a little before the strain it was given.
   constexpr double end_of_run = 1e-3;
@@ -63,74 +68,82 @@ Measured taken(const Rows& rows, const Column& values, const When& when) {
     return undefined_because(std::string("the run has no ") + (by_time ? "time " : "strain ") + number(when.value) +
                              ": it goes from " + number(x.front()) + " to " + number(x.back()));
   }
-  if (when.kind == When::Kind::mean_from_strain)
-    return defined_or(mean_from(x, values, when.value), "it is not defined at every output from that strain on");
+  if (when.kind == When::Kind::mean_from_strain || when.kind == When::Kind::mean_from_time)
+    return defined_or(mean_from(x, values, when.value), std::string("it is not defined at every output from that ") +
+                                                            (by_time ? "time" : "strain") + " on");
   if (when.value >= x.back()) return defined_or(values.back(), nothing);
   return defined_or(interpolated_at(x, values, when.value), nothing);
 }
 
+/// How far the centroid comes along an axis in a second, from a time to the end.
+Measured speed(const Quantity& quantity, const Outputs& place) {
+  const double end = place.time.back(), from = quantity.from_time.value_or((place.time.front() + end) / 2);
+  if (!(from < end)) return undefined_because("the run ends at " + number(end) + " s");
+  return defined_or((place.values.back() - interpolated_at(place.time, place.values, from)) / (end - from),
+                    "the run begins after " + number(from) + " s");
+}
+
+/// Columns of cells.csv that kinds are made of; others name their own.
+const std::string& column_of(const Quantity& quantity) {
+  static const std::string deformation = "deformation", angle = "angle_rad", treading = "tank_treading_angle_rad";
+  const bool turns = quantity.kind == QuantityKind::period && !quantity.of_long_axis;
+  if (quantity.kind == QuantityKind::deformation) return deformation;
+  return !quantity.column.empty() ? quantity.column : turns ? treading : angle;
+}
+
 Measured of_cell(const Quantity& quantity, const files::StoredTable& cells) {
-  const CellRows rows(cells, quantity.cell);
-  if (rows.rows.empty()) return undefined_because("the run has no cell " + std::to_string(quantity.cell));
-  const When when = quantity.at.value_or(When{});
+  const std::string& column = column_of(quantity);
+  if (!cells.has(column)) return undefined_because("a run in two dimensions has no " + column);
+  const Outputs rows(cells, column, quantity.cell);
+  if (rows.values.empty()) return undefined_because("the run has no cell " + std::to_string(quantity.cell));
   constexpr double degrees = 180 / std::numbers::pi;
   switch (quantity.kind) {
-    case QuantityKind::deformation:
-      return taken(rows, rows.of("deformation"), when);
-    case QuantityKind::angle: {
-      Measured angle = taken(rows, rows.of("angle_rad"), when);
-      angle.value *= degrees;
-      return angle;
-    }
     case QuantityKind::passage:
-      return defined_or(interpolated_at(rows.of("angle_rad"), rows.strain, quantity.passed_angle),
+      return defined_or(interpolated_at(rows.values, rows.strain, quantity.passed_angle),
                         "the long axis never passes " + number(quantity.passed_angle * degrees) + " deg");
     case QuantityKind::period:
-      return defined_or(
-          length_of_turns(rows.strain, rows.of(quantity.of_long_axis ? "angle_rad" : "tank_treading_angle_rad"),
-                          quantity.turns, quantity.from_strain),
-          std::string(quantity.of_long_axis ? "the long axis" : "the outline") + " does not turn " +
-              number(quantity.turns) + " times in the run");
-    default:
-      return taken(rows, rows.of(quantity.column), when);
+      return defined_or(length_of_turns(rows.strain, rows.values, quantity.turns, quantity.from_strain),
+                        std::string(quantity.of_long_axis ? "the long axis" : "the outline") + " does not turn " +
+                            number(quantity.turns) + " times in the run");
+    case QuantityKind::speed:
+      return speed(quantity, rows);
+    default: {
+      Measured result = taken(rows, quantity.at.value_or(When{}));
+      if (quantity.kind == QuantityKind::angle) result.value *= degrees;
+      return result;
+    }
   }
 }
 
 Measured smallest_gap(const Quantity& quantity, const files::StoredTable& cells) {
-  const Column number_of = cells.numbers("cell"), step = cells.numbers("step"), gaps = cells.numbers("min_gap_m");
-  const Column strain = cells.numbers("strain"), time = cells.numbers("time_s");
-  Rows rows;
-  Column least;
-  double last = -1;
-  for (std::size_t i = 0; i < gaps.size(); ++i) {
-    if (quantity.cell >= 0 && number_of[i] != quantity.cell) continue;
-    if (step[i] != last) {
-      rows.strain.push_back(strain[i]);
-      rows.time.push_back(time[i]);
-      least.push_back(gaps[i]);
-    }
-    least.back() = std::min(least.back(), gaps[i]);
-    last = step[i];
-  }
-  if (quantity.at) return taken(rows, least, *quantity.at);
-  const auto smallest = std::min_element(least.begin(), least.end());
-  return smallest == least.end() ? undefined_because("the run has no cell to measure a gap of")
-                                 : defined_or(*smallest, "there is no second cell or image to measure a gap to");
+  const Outputs gaps(cells, "min_gap_m", quantity.cell, least, std::numeric_limits<double>::infinity());
+  if (quantity.at) return taken(gaps, *quantity.at);
+  const auto smallest = std::min_element(gaps.values.begin(), gaps.values.end());
+  return smallest == gaps.values.end() ? undefined_because("the run has no cell to measure a gap of")
+                                       : defined_or(*smallest, "there is no second cell or image to measure a gap to");
+}
+
+/// Of all contacts together; cells without one add nothing.
+Measured contact(const Quantity& quantity, const files::StoredTable& aggregates) {
+  const std::string area = "contact_area_m2", length = "contact_length_m";
+  const std::string& wanted = quantity.kind == QuantityKind::contact_area ? area : length;
+  if ((wanted == area) != aggregates.has(area))
+    return undefined_because(wanted == area ? "contacts in two dimensions have no area: ask for contact_length"
+                                            : "contacts in three dimensions have an area: ask for contact_area");
+  return taken(Outputs(aggregates, wanted, -1, sum), quantity.at.value_or(When{}));
 }
 
 Measured of_series(const Quantity& quantity, const std::filesystem::path& directory, const files::StoredTable& series) {
-  const Rows rows{series.numbers("strain"), series.numbers("time_s")};
   const bool viscosity = quantity.kind == QuantityKind::relative_viscosity;
-  const Column values = series.numbers(viscosity ? "relative_viscosity" : quantity.column);
-  Measured result = taken(rows, values, quantity.at.value_or(When{}));
+  const Outputs rows(series, viscosity ? "relative_viscosity" : quantity.column, -1);
+  Measured result = taken(rows, quantity.at.value_or(When{}));
   if (!quantity.intrinsic || !result.why_not.empty()) return result;
-  const files::StoredTable cells(directory / "cells.csv");
-  const Column area = cells.numbers("area_m2"), step = cells.numbers("step");
-  double covered = 0;
-  for (std::size_t i = 0; i < area.size() && step[i] == step[0]; ++i) covered += area[i];
-  if (!(covered > 0)) return undefined_because("the run has no cells that could thicken the fluid");
   const scene::Scene scene = plan::read_unpacked_scene(directory / "scene.json").scene;
-  result.value = (result.value - 1) / (covered / scene.domain.size.prod());
+  const files::StoredTable cells(directory / "cells.csv");
+  const Outputs enclosed(cells, scene.domain.depth ? "volume_m3" : "area_m2", -1, sum);
+  if (enclosed.values.empty() || !(enclosed.values[0] > 0))
+    return undefined_because("the run has no cells that could thicken the fluid");
+  result.value = (result.value - 1) / (enclosed.values[0] / scene.domain.content());
   return result;
 }
 
@@ -182,9 +195,13 @@ Measured measure(const Quantity& quantity, const std::filesystem::path& run_dire
     case QuantityKind::angle:
     case QuantityKind::passage:
     case QuantityKind::period:
+    case QuantityKind::speed:
       return of_cell(quantity, files::StoredTable(run_directory / "cells.csv"));
     case QuantityKind::gap:
       return smallest_gap(quantity, files::StoredTable(run_directory / "cells.csv"));
+    case QuantityKind::contact_area:
+    case QuantityKind::contact_length:
+      return contact(quantity, files::StoredTable(run_directory / "aggregates.csv"));
     case QuantityKind::area_drift:
       return of_summary(summary.at("conservation").at("area_drift_max"), "area drift: the scene has no cells");
     case QuantityKind::mass_drift:

@@ -22,9 +22,9 @@ struct KindTraits {
   bool exactly_zero = false;
 };
 
-const std::array<KindTraits, 12>& kinds() {
+const std::array<KindTraits, 15>& kinds() {
   using enum ErrorKind;
-  static const std::array<KindTraits, 12> table{{
+  static const std::array<KindTraits, 15> table{{
       {"deformation", "", relative, 0.01, {}, {"cell", "at"}},
       {"angle", "deg", absolute, 1, {}, {"cell", "at"}},
       {"area_drift", "", absolute, 1e-3, {}, {}, true},
@@ -32,6 +32,9 @@ const std::array<KindTraits, 12>& kinds() {
       {"passage", "", relative, 0.01, {"angle"}, {"cell"}},
       {"period", "", relative, 0.01, {}, {"cell", "of", "turns", "from_strain"}},
       {"gap", "m", relative, 0.01, {}, {"cell", "at"}},
+      {"speed", "m/s", relative, 0.01, {}, {"cell", "along", "from_time"}},
+      {"contact_area", "m2", relative, 0.01, {}, {"at"}},
+      {"contact_length", "m", relative, 0.01, {}, {"at"}},
       {"dissociation_strain", "", relative, 0.1, {}, {"count", "for_good"}},
       {"aggregate_count", "", absolute, 0.5, {}, {}},
       {"relative_viscosity", "", relative, 0.01, {}, {"at", "intrinsic"}},
@@ -41,16 +44,22 @@ const std::array<KindTraits, 12>& kinds() {
   return table;
 }
 
+double time_of(const StudyReader& reader, const std::string& pointer) {
+  return reader.scene_fields().quantity(pointer, "s", {0, scene::range::time.most});
+}
+
 When read_when(const StudyReader& reader, const std::string& pointer) {
   if (reader.scene_fields().at(pointer).is_string()) {
     reader.choice(pointer, {"end"});
     return {};
   }
-  reader.only(pointer, {"strain", "time", "mean_from_strain"}, "\"at\"");
+  const std::vector<std::string> keys{"strain", "time", "mean_from_strain", "mean_from_time"};
+  reader.only(pointer, keys, "\"at\"");
   if (reader.scene_fields().at(pointer).size() != 1)
-    reader.scene_fields().refuse(pointer, "\"at\" is \"end\", or an object with one of strain, time, mean_from_strain");
-  if (reader.has(pointer + "/time"))
-    return {When::Kind::time, reader.scene_fields().quantity(pointer + "/time", "s", {0, scene::range::time.most})};
+    reader.scene_fields().refuse(pointer, "\"at\" is \"end\", or an object with one of " + listed(keys));
+  for (const auto& [key, kind] :
+       {std::pair("/time", When::Kind::time), {"/mean_from_time", When::Kind::mean_from_time}})
+    if (reader.has(pointer + key)) return {kind, time_of(reader, pointer + key)};
   if (reader.has(pointer + "/strain")) return {When::Kind::strain, reader.number(pointer + "/strain")};
   return {When::Kind::mean_from_strain, reader.number(pointer + "/mean_from_strain")};
 }
@@ -83,6 +92,10 @@ void read_own_keys(const StudyReader& reader, const std::string& pointer, Quanti
     quantity.of_long_axis = reader.choice(pointer + "/of", {"tank_treading", "rotation"}) == 1;
   if (reader.has(pointer + "/turns")) quantity.turns = reader.positive(pointer + "/turns");
   if (reader.has(pointer + "/from_strain")) quantity.from_strain = reader.number(pointer + "/from_strain");
+  if (reader.has(pointer + "/from_time")) quantity.from_time = time_of(reader, pointer + "/from_time");
+  if (quantity.kind == QuantityKind::speed) quantity.column = "x_m";
+  if (reader.has(pointer + "/along"))
+    quantity.column = std::array{"x_m", "y_m", "z_m"}[reader.choice(pointer + "/along", {"x", "y", "z"})];
   if (reader.has(pointer + "/count")) quantity.count = reader.count(pointer + "/count", 1);
   if (reader.has(pointer + "/for_good")) quantity.for_good = reader.yes(pointer + "/for_good");
   if (reader.has(pointer + "/intrinsic")) quantity.intrinsic = reader.yes(pointer + "/intrinsic");

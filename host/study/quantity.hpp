@@ -17,6 +17,9 @@ enum class QuantityKind {
   passage,
   period,
   gap,
+  speed,
+  contact_area,
+  contact_length,
   dissociation_strain,
   aggregate_count,
   relative_viscosity,
@@ -27,10 +30,11 @@ enum class QuantityKind {
 /// When a quantity is taken.
 struct When {
   enum class Kind {
-    end,              ///< the last output
-    strain,           ///< that of the tables, summed over the stages
-    time,             ///< s
-    mean_from_strain  ///< mean over the strain from there to the end
+    end,               ///< the last output
+    strain,            ///< that of the tables, summed over the stages
+    time,              ///< s
+    mean_from_strain,  ///< mean over the strain from there to the end
+    mean_from_time     ///< likewise over the time, s
   };
   Kind kind = Kind::end;
   double value = 0;
@@ -48,18 +52,19 @@ struct Quantity {
   ErrorKind error;
   double target;        ///< error that the study's sentences speak of
   Reference reference;  ///< of velocity_l2 and the drifts exactly 0
-  int cell = 0;         ///< of deformation, angle, passage, period, and of a column of cells.csv
+  int cell = 0;         ///< of deformation, angle, passage, period, speed, and of a column of cells.csv
   std::optional<When> at;
-  double passed_angle = 0;            ///< passage: rad
-  bool of_long_axis = false;          ///< period: of the long axis instead of the outline's first node
-  double turns = 1;                   ///< period
-  std::optional<double> from_strain;  ///< period
-  std::optional<int> count;           ///< dissociation_strain: aggregates; none: all cells apart
-  bool for_good = false;              ///< dissociation_strain
-  bool intrinsic = false;             ///< relative_viscosity
-  bool poiseuille = false;            ///< velocity_l2: of a driven channel, else of moving walls
-  bool steady = true;                 ///< velocity_l2: against the steady flow, else against the start-up from rest
-  std::string table, column;          ///< column: "cells" or "series"
+  double passed_angle = 0;              ///< passage: rad
+  bool of_long_axis = false;            ///< period: of the long axis instead of the outline's first node
+  double turns = 1;                     ///< period
+  std::optional<double> from_strain;    ///< period
+  std::optional<double> from_time;      ///< speed: s; none: from half of the run on
+  std::optional<int> count;             ///< dissociation_strain: aggregates; none: all cells apart
+  bool for_good = false;                ///< dissociation_strain
+  bool intrinsic = false;               ///< relative_viscosity
+  bool poiseuille = false;              ///< velocity_l2: of a driven channel, else of moving walls
+  bool steady = true;                   ///< velocity_l2: against the steady flow, else against the start-up from rest
+  std::string table = "cells", column;  ///< column: "cells" or "series"; speed: the centroid's along its axis
 };
 
 /// The quantity at `pointer` of a study; docs/study.md tells the keys of each kind. Throws Error(bad_input).

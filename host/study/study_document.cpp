@@ -67,8 +67,8 @@ trial::Point read_default(const Study& study) {
   trial::Point point;
   for (std::size_t a = 0; a < study.axes.size(); ++a) {
     int first = 0;
-    if (study.axes[a].refines) {
-      const Json& factors = document.root()["matrix"][a]["refine"];
+    if (const Json& axis = document.root()["matrix"][a]; axis.contains("refine")) {
+      const Json& factors = axis["refine"];
       const auto one = std::find(factors.begin(), factors.end(), Json(1));
       first = one == factors.end() ? 0 : static_cast<int>(one - factors.begin());
     }

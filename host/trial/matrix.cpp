@@ -76,8 +76,8 @@ class AxisReader {
       : document_(document), pointer_(std::move(pointer)), scene_(scene), axis_(value_at(document, pointer_)) {}
 
   [[nodiscard]] Axis read() const {
-    Axis axis{axis_["name"], {}, axis_.contains("refine")};
-    if (axis.refines) axis.settings = refined_settings(document_, pointer_ + "/refine", scene_);
+    Axis axis{axis_["name"], {}, axis_.contains("refine") && axis_.value("of", "both") != "membranes"};
+    if (axis_.contains("refine")) axis.settings = refined_settings(document_, pointer_, scene_);
     if (axis_.contains("values")) axis.settings = values();
     if (axis_.contains("settings")) axis.settings = named();
     if (axis_.contains("threads")) axis.settings = threads();

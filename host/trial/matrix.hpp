@@ -21,7 +21,7 @@ struct Setting {
 struct Axis {
   std::string name;
   std::vector<Setting> settings;
-  bool refines = false;  ///< made by "refine"
+  bool refines = false;  ///< made by "refine" of the lattice, with or without the membranes
 };
 
 /// One index of Axis::settings for each axis.
@@ -54,8 +54,9 @@ std::string name_of(const std::vector<Axis>& axes, const Point& point);
 /// Error(bad_input).
 void put_changes(nlohmann::json& scene, const json::Document& document, const std::string& pointer);
 
-/// The settings of "refine" (schema): factors of nodes and segments, labelled by the first cell type's radius in
-/// lattice spacings, or by the number of nodes across where there is no cell.
+/// The settings of the axis at `pointer`, which has "refine" (schema): factors of nodes, segments and, squared, triangles,
+/// labelled by the first cell type's radius in lattice spacings, by the number of nodes across where there is none, or, of
+/// membranes alone, by its segments or triangles.
 std::vector<Setting> refined_settings(const json::Document& document, const std::string& pointer,
                                       const nlohmann::json& base_scene);
 

@@ -1,4 +1,4 @@
-// Settings that make a scene's lattice and membranes finer or coarser together.
+// Settings that make a scene's lattice and membranes finer or coarser, together or one alone.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "json/json_pointer.hpp"
 #include "matrix.hpp"
+#include "shape/extent.hpp"
 #include "units/units.hpp"
 
 namespace rouleau::trial {
@@ -19,44 +20,65 @@ double length_of(const Json& quantity) {
   return quantity.is_string() ? units::Units().to_si(quantity.get<std::string>(), "m", "length") : NAN;
 }
 
-/// Radius of the first cell's type, or half its longest axis, in lattice spacings of the base scene; NaN without cells.
-double radius_in_spacings(const Json& scene) {
+/// The first cell's type; null without one.
+const Json* first_type(const Json& scene) {
   const Json cells = scene.value("cells", Json::array());
   const auto typed = std::find_if(cells.begin(), cells.end(), [](const Json& entry) { return entry.contains("type"); });
-  if (!cells.is_array() || typed == cells.end()) return NAN;  // cells in a file alone have no type here
-  const Json& first = *typed;
-  const Json& shape = scene.at("cell_types").at(first.at("type").get<std::string>()).at("shape");
-  const auto kind = shape.begin();
-  const Json& of = kind.value();
-  Json length;
-  if (of.contains("radius")) {
-    length = of.at("radius");
-  } else if (of.contains("semi_axes")) {
-    const Json& axes = of.at("semi_axes");
-    length = length_of(axes.at(0)) < length_of(axes.at(1)) ? axes.at(1) : axes.at(0);
-  }
+  if (!cells.is_array() || typed == cells.end()) return nullptr;  // cells in a file alone have no type here
+  return &scene.at("cell_types").at(typed->at("type").get<std::string>());
+}
+
+/// Radius of a type, or half its longest axis, in lattice spacings of the scene; NaN of a mesh.
+double radius_in_spacings(const Json& scene, const Json& type) {
+  const Json& of = type.at("shape").begin().value();
+  double length = NAN;
+  if (of.contains("radius")) length = length_of(of.at("radius"));
+  for (const Json& axis : of.value("semi_axes", Json::array())) length = std::fmax(length, length_of(axis));
   const Json& domain = scene.at("domain");
-  const double spacing = length_of(domain.at("size").at(0)) / domain.at("nodes").at(0).get<double>();
-  return length_of(length) / spacing;
+  return length / (length_of(domain.at("size").at(0)) / domain.at("nodes").at(0).get<double>());
 }
 
 class Refinement {
  public:
-  Refinement(const json::Document& document, const Json& scene)
-      : document_(document), scene_(scene), radius_(radius_in_spacings(scene)) {}
+  Refinement(const json::Document& document, std::string pointer, const Json& scene)
+      : document_(document),
+        axis_(std::move(pointer)),
+        scene_(scene),
+        in_space_(scene.at("domain").at("nodes").size() > 2),
+        of_(document.root()[Json::json_pointer(axis_)].value("of", "both")) {}
 
+  [[nodiscard]] std::vector<Setting> settings() const {
+    std::vector<Setting> all;
+    const std::size_t count = document_.root()[Json::json_pointer(axis_ + "/refine")].size();
+    for (std::size_t i = 0; i < count; ++i) all.push_back(setting(json::child_pointer(axis_ + "/refine", i)));
+    return all;
+  }
+
+ private:
   [[nodiscard]] Setting setting(const std::string& pointer) const {
     const double factor = document_.root()[Json::json_pointer(pointer)].get<double>();
     Setting setting;
-    Json nodes = Json::array();
-    for (const Json& base : scene_.at("domain").at("nodes")) nodes.push_back(whole(base.get<long>(), factor, pointer));
-    setting.set.emplace_back("/domain/nodes", nodes);
+    const Json* first = first_type(scene_);
+    if (of_ == "membranes") {
+      if (first == nullptr)
+        throw Error(Cause::bad_input, document_.place(axis_ + "/of"),
+                    "the scene has no cells whose membranes this is of");
+      setting.position = static_cast<double>(pieces(*first, "of the first cell", factor));
+    } else {
+      Json nodes = Json::array();
+      for (const Json& base : scene_["domain"]["nodes"]) nodes.push_back(whole(base.get<long>(), factor, pointer));
+      setting.set.emplace_back("/domain/nodes", nodes);
+      setting.position = first == nullptr ? NAN : factor * radius_in_spacings(scene_, *first);
+      if (std::isnan(setting.position)) setting.position = nodes[1].get<double>();
+    }
     const Json types = scene_.value("cell_types", Json::object());
     for (const auto& [name, type] : types.items()) {
-      const long segments = std::lround(type.at("segments").get<double>() * factor);
-      setting.set.emplace_back(json::child_pointer(json::child_pointer("/cell_types", name), "segments"), segments);
+      const bool follows = in_space_ && !type.contains("triangles") && !type.at("shape").contains("mesh");
+      if (of_ == "both" && follows) continue;  // nodes of such a surface lie a lattice spacing apart anyway
+      const long changed = pieces(type, "of " + in_quotes(name), of_ == "lattice" ? 1 : factor);
+      if (of_ == "lattice") continue;
+      setting.set.emplace_back(json::child_pointer(json::child_pointer("/cell_types", name), key()), changed);
     }
-    setting.position = std::isnan(radius_) ? nodes[1].get<double>() : radius_ * factor;
     setting.label = number(setting.position, 3);
     // Whole numbers in full: 1024 nodes, not 1.02e+03.
     if (std::abs(setting.position - std::round(setting.position)) < 1e-9 * setting.position)
@@ -64,14 +86,30 @@ class Refinement {
     return setting;
   }
 
- private:
+  [[nodiscard]] const char* key() const { return in_space_ ? "triangles" : "segments"; }
+
+  /// Segments or triangles of a type whose pieces are so many times shorter.
+  [[nodiscard]] long pieces(const Json& type, const std::string& whose, double factor) const {
+    if (!in_space_) return std::lround(type.at("segments").get<double>() * factor);
+    if (type.contains("triangles")) return shape::divided_triangles(type["triangles"].get<int>(), 1 / factor);
+    if (type.at("shape").contains("mesh")) {
+      if (of_ == "lattice") return 0;
+      throw Error(Cause::bad_input, document_.place(axis_),
+                  "the membrane " + whose + " is a mesh from a file, which cannot be divided",
+                  {"say \"of\": \"lattice\", and make an axis of files with the pointer of shape/mesh/file"});
+    }
+    throw Error(Cause::bad_input, document_.place(axis_),
+                "the triangles " + whose + " follow the lattice, for the scene does not say how many there are",
+                {"give its \"triangles\" (20 n^2), for example by the study's \"set\""});
+  }
+
   [[nodiscard]] long whole(long base, double factor, const std::string& pointer) const {
     const double nodes = static_cast<double>(base) * factor;
     const long rounded = std::lround(nodes);
     if (rounded > 0 && std::abs(nodes - static_cast<double>(rounded)) < 1e-9 * nodes) return rounded;
     const Json& all = scene_["domain"]["nodes"];
-    // Multiples of 1/step keep both numbers of nodes whole.
-    const long step = std::gcd(all[0].get<long>(), all[1].get<long>());
+    long step = 0;  // multiples of 1/step keep all numbers of nodes whole
+    for (const Json& count : all) step = std::gcd(step, count.get<long>());
     const auto steps = static_cast<double>(step);
     throw Error(Cause::bad_input, document_.place(pointer),
                 "a factor of " + number(factor) + " makes " + number(nodes, 9) + " of the scene's " +
@@ -80,8 +118,10 @@ class Refinement {
   }
 
   const json::Document& document_;
+  std::string axis_;
   const Json& scene_;
-  double radius_;
+  bool in_space_;
+  std::string of_;
 };
 
 }  // namespace
@@ -89,20 +129,15 @@ class Refinement {
 std::vector<Setting> refined_settings(const json::Document& document, const std::string& pointer,
                                       const Json& base_scene) {
   try {
-    const Refinement refinement(document, base_scene);
-    std::vector<Setting> settings;
-    const Json& factors = document.root()[Json::json_pointer(pointer)];
-    for (std::size_t i = 0; i < factors.size(); ++i)
-      settings.push_back(refinement.setting(json::child_pointer(pointer, i)));
-    return settings;
+    return Refinement(document, pointer, base_scene).settings();
   } catch (const units::UnitError& error) {
     throw Error(Cause::bad_input, document.place("/scene"),
                 "the scene cannot be refined: " + std::string(error.what()));
   } catch (const Json::exception&) {
     throw Error(
-        Cause::bad_input, document.place(pointer),
-        "the scene cannot be refined: that wants domain.nodes and the segments of every cell type, and cells of "
-        "types that there are");
+        Cause::bad_input, document.place(pointer + "/refine"),
+        "the scene cannot be refined: that wants domain.nodes, in two dimensions the segments of every cell type, and "
+        "cells of types that there are");
   }
 }
 

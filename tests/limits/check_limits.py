@@ -86,9 +86,12 @@ class Edges(Case):
     def test_margins_of_scenes_are_told_in_lattice_units(self):
         half = json.loads(json.dumps(SCENE))
         half["numerics"]["density_factor"] = 500
-        for name, scene in (("same", SCENE), ("half", half), ("fluid", {**SCENE, "cells": [], "cell_types": {}})):
+        space = json.loads(json.dumps(SCENE))  # an edge of two dimensions says nothing about it
+        space["domain"].update(size=["12.512 um"] * 3, nodes=[64] * 3)
+        scenes = {"same": SCENE, "half": half, "fluid": {**SCENE, "cells": [], "cell_types": {}}, "space": space}
+        for name, scene in scenes.items():
             (self.path / f"{name}.json").write_text(json.dumps(scene))
-        self.run_limits(self.write(parameter=STIFFNESS, scenes=["same.json", "half.json", "fluid.json"]), "--quiet")
+        self.run_limits(self.write(parameter=STIFFNESS, scenes=[f"{name}.json" for name in scenes]), "--quiet")
         limits = self.found()
         margins = {Path(scene["scene"]).stem: scene for scene in limits["scenes"]}
         self.assertEqual(set(margins), {"same", "half"})

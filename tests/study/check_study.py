@@ -160,6 +160,27 @@ class A_study_runs_every_point(Case):
                 self.assertLess(fine, 0.6 * coarse)
                 print(f"{name}: errors {coarse:.3g}, {fine:.3g}")
 
+    def test_of_cells_in_three_dimensions_lattice_and_membranes_apart(self):
+        scene = {**SCENE, "domain": {"size": ["8 um", "8 um", "8 um"], "nodes": [16, 16, 16], "y": SCENE["domain"]["y"]},
+                 "numerics": {"density_factor": 300},
+                 "cell_types": {"ball": {"shape": {"sphere": {"radius": "2 um"}}, "triangles": 320, "membrane": [
+                     {"model": "neo-hookean", "parameters": {"shear_modulus": "5e-6 N/m"}}]}},
+                 "cells": [{"type": "ball", "at": ["4 um", "5 um", "4 um"]}],
+                 "stages": [{"name": "shear", "shear_rate": "100 1/s", "strain": 0.2, "start": "developed"}],
+                 "output": {"cells": {"strain": 0.05}, "checkpoint": "never"}}
+        matrix = [{"name": "radius", "refine": [0.75, 1, 1.5], "of": "lattice"},
+                  {"name": "triangles", "refine": [0.5, 1], "of": "membranes"}]
+        self.run_study(self.study(matrix, scene, quantities=[
+            {"name": "D", "kind": "deformation"}, {"name": "speed", "kind": "speed"},
+            {"name": "viscosity", "kind": "relative_viscosity", "intrinsic": True}]))
+        study = self.result()
+        self.assertEqual([tuple(p["labels"].values()) for p in study["points"]],
+                         [(radius, triangles) for radius in ("3", "4", "6") for triangles in ("80", "320")])
+        for point in study["points"]:
+            self.assertEqual({q: r["why_not"] for q, r in point["results"].items() if r["value"] is None}, {})
+            self.assertAlmostEqual(point["results"]["speed"]["value"], 1e-4, delta=2e-5)  # 1 um above the middle
+        self.assertEqual((study["line"], study["default"]), ("radius", {"radius": "4", "triangles": "320"}))
+
     def test_on_the_threads_that_an_axis_names(self):
         self.run_study(self.study([{"name": "threads", "threads": [1, 2]}]))
         points = self.result()["points"]

@@ -303,3 +303,21 @@ TEST_CASE("a fluid alone is judged by its own start") {
   CHECK_THAT(early->remedy, Catch::Matchers::Contains("more time"));
   CHECK(limit_named("four-cells-shear.json", {alone, none, factor, output, flow("2 ms")}, left)->margin > 1);
 }
+
+TEST_CASE("plan knows how thin the fluid inside cells may be on the lattice where slip is corrected") {
+  // limits/viscosity-ratio-3d.json: at tau 1 and ratio 0.033 sheared cells came apart, which plan did not say; at tau 2 they do not.
+  const Catalog catalog({ROULEAU_PLUGINS});
+  const auto margin = [&](const std::vector<std::string>& changes) -> std::optional<double> {
+    for (const Limit& limit :
+         find_limits(make_plan(read_scene(std::string(ROULEAU_SCENES) + "/red-cell-3d.json", changes), catalog)))
+      if (limit.name == "tau - 1/2 inside the cells") return limit.margin;
+    return std::nullopt;
+  };
+  const std::string thin = "/cell_types/rbc/interior_viscosity=\"0.039 cP\"",
+                    corrected = "/numerics/slip_correction=true";
+  CHECK(margin({thin, corrected}).value_or(9) < 1);
+  CHECK(margin({thin, "/numerics/kernel=sharp6"}).value_or(9) < 1);
+  CHECK(margin({thin, corrected, "/numerics/tau=2"}) > 1);
+  CHECK_FALSE(margin({thin}));       // the plain scheme bore a hundredth
+  CHECK_FALSE(margin({corrected}));  // more viscous than the plasma
+}

@@ -172,6 +172,70 @@ TEST_CASE("quantities of the suspension come from series.csv and summary.json", 
   CHECK(run.value(named({{"kind", "aggregate_count"}})) == 4);
 }
 
+namespace {
+
+/// Two spheres of 30 um3 in a box of 40 x 20 x 10 um or, with walls, a tube of 5 um radius: cell k is at 3 (k + 1) um/s t along x and
+/// t^2 um along z; their contact has 2 um2 and grows by 1 um2/s.
+WrittenRun spheres(bool tube) {
+  Json scene = Json::parse(R"({
+    "rouleau": 1, "domain": {"size": ["40 um", "20 um", "10 um"], "nodes": [64, 32, 16]},
+    "fluid": {"density": "1 g/cm3", "viscosity": "1 cP"},
+    "cell_types": {"ball": {"shape": {"sphere": {"radius": "2 um"}}, "membrane": []}},
+    "cells": [{"type": "ball", "at": ["5 um", "10 um", "5 um"]}, {"type": "ball", "at": ["15 um", "10 um", "5 um"]}],
+    "stages": [{"name": "flow", "pressure_gradient": "30 Pa/m", "duration": "4 s"}]})");
+  if (tube) {
+    scene["domain"] = Json::parse(R"({"size": ["40 um", "10 um", "10 um"], "nodes": [64, 16, 16]})");
+    scene["domain"]["walls"] = {{"tube", {{"radius", "5 um"}}}};
+    for (Json& cell : scene["cells"]) cell["at"][1] = "5 um";
+  }
+  std::vector<Snapshot> snapshots;
+  for (int i = 0; i <= 4; ++i) {
+    Snapshot s;
+    s.step = i;
+    s.time = i;
+    s.strain = 0;
+    s.stage_name = "flow";
+    s.relative_viscosity = 1 + 0.1 * i;
+    for (int k = 0; k < 2; ++k) {
+      CellSnapshot cell{};
+      cell.cell = k;
+      cell.type = "ball";
+      cell.x = 3e-6 * (k + 1) * i;
+      cell.in_space = CellSnapshot::InSpace{1e-6 * i * i, 30e-18, 50e-12, {}, {}};
+      s.cells.push_back(cell);
+    }
+    s.contacts.push_back({.cell_a = 0,
+                          .cell_b = 0,
+                          .image = {1, 0, 0},
+                          .gap = 1e-7,
+                          .contact_length = std::nan(""),
+                          .contact_area = 1e-12 * (2 + i)});
+    snapshots.push_back(s);
+  }
+  return {scene, snapshots, summary_of_cells()};
+}
+
+}  // namespace
+
+TEST_CASE("in three dimensions cells have speeds, contacts areas, and the share of cells is one of volumes",
+          "[quantity]") {
+  const WrittenRun box = spheres(false), tube = spheres(true);
+  CHECK(box.value(named({{"kind", "speed"}})) == Approx(3e-6));
+  CHECK(box.value(named({{"kind", "speed"}, {"cell", 1}, {"from_time", "1 s"}})) == Approx(6e-6));
+  CHECK(box.value(named({{"kind", "speed"}, {"along", "z"}})) == Approx(6e-6));  // from 2 to 4 s
+  CHECK(box.measured(named({{"kind", "speed"}, {"from_time", "4 s"}})).why_not == "the run ends at 4 s");
+  CHECK(box.value(named({{"kind", "contact_area"}})) == Approx(6e-12));
+  CHECK(box.value(named({{"kind", "contact_area"}, {"at", {{"mean_from_time", "2 s"}}}})) == Approx(5e-12));
+  CHECK(box.measured(named({{"kind", "contact_length"}})).why_not.find("ask for contact_area") != std::string::npos);
+  const Json intrinsic = named({{"kind", "relative_viscosity"}, {"intrinsic", true}});
+  CHECK(box.value(intrinsic) == Approx(0.4 / (60.0 / 8000)));
+  CHECK(tube.value(intrinsic) == Approx(0.4 / (60 / (std::numbers::pi * 25 * 40))));
+  const WrittenRun plane(scene_of_cells(), sheared_cells(), summary_of_cells());
+  CHECK(plane.value(named({{"kind", "contact_length"}})) == 0);
+  CHECK(plane.measured(named({{"kind", "contact_area"}})).why_not.find("ask for contact_length") != std::string::npos);
+  CHECK(plane.measured(named({{"kind", "speed"}, {"along", "z"}})).why_not == "a run in two dimensions has no z_m");
+}
+
 TEST_CASE("dissociation is told from the start of shear, as exactly as the outputs allow", "[quantity]") {
   const WrittenRun run(scene_of_cells(), sheared_cells(), summary_of_cells());
   const Measured all = run.measured(named({{"kind", "dissociation_strain"}}));

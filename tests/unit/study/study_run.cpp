@@ -64,6 +64,19 @@ Json start_up() {
 
 }  // namespace
 
+TEST_CASE("every shipped study can be read, and all its points are scenes") {
+  int in_space = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(ROULEAU_REFERENCE) / "../../studies")) {
+    if (!entry.is_regular_file()) continue;
+    INFO(entry.path());
+    const Study study = read_study(entry.path());
+    for (const auto& point : rouleau::trial::cross(study.axes))
+      REQUIRE_NOTHROW(rouleau::trial::check_scene(rouleau::trial::scene_of(study.scene, study.axes, point), "a point"));
+    in_space += study.scene["domain"]["nodes"].size() == 3 ? 1 : 0;
+  }
+  CHECK(in_space >= 5);
+}
+
 TEST_CASE("a study of Couette flow finds second order, and every point has its place in study.json") {
   SmallStudy study(grids, start_up());
   const Json result = study.run();

@@ -55,6 +55,71 @@ TEST_CASE("refining multiplies nodes and segments, and its labels are radii in l
   CHECK(scene_of(capsule_scene(), axes, Point{{1}}) == capsule_scene());
 }
 
+namespace {
+
+/// That scene with a sphere, in three dimensions.
+Json sphere_scene() {
+  Json scene = capsule_scene();
+  scene["domain"]["size"] = {"4 um", "8 um", "4 um"};
+  scene["domain"]["nodes"] = {8, 16, 8};
+  scene["cell_types"]["capsule"] = {{"shape", {{"sphere", {{"radius", "1 um"}}}}}, {"triangles", 320}};
+  scene["cells"][0]["at"] = {"2 um", "4 um", "2 um"};
+  return scene;
+}
+
+std::vector<Json> counts(const Json& scene, const std::string& axis, const std::string& key) {
+  const auto axes = axes_of("[" + axis + "]", scene);
+  std::vector<Json> all;
+  for (int i = 0; i < static_cast<int>(axes[0].settings.size()); ++i) {
+    const Json changed = scene_of(scene, axes, Point{{i}});
+    all.push_back({changed["domain"]["nodes"], changed["cell_types"]["capsule"].value(key, 0)});
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("in three dimensions refining multiplies nodes, and triangles by the square") {
+  const std::string axis = R"({"name": "radius", "refine": [0.5, 1, 1.5]})";
+  CHECK(labels(axes_of("[" + axis + "]", sphere_scene())[0]) == Words{"1", "2", "3"});
+  CHECK(counts(sphere_scene(), axis, "triangles") ==
+        std::vector<Json>{{{4, 8, 4}, 80}, {{8, 16, 8}, 320}, {{12, 24, 12}, 720}});
+  Json open = sphere_scene();  // nodes of the surface then lie a spacing apart, whatever that is
+  open["cell_types"]["capsule"].erase("triangles");
+  CHECK(counts(open, axis, "triangles") == std::vector<Json>{{{4, 8, 4}, 0}, {{8, 16, 8}, 0}, {{12, 24, 12}, 0}});
+  Json longish = open;
+  longish["cell_types"]["capsule"]["shape"] = {{"ellipsoid", {{"semi_axes", {"1 um", "0.5 um", "2 um"}}}}};
+  CHECK(labels(axes_of("[" + axis + "]", longish)[0]) == Words{"2", "4", "6"});
+}
+
+TEST_CASE("the lattice alone or the membranes alone are refined in both dimensions") {
+  const std::string lattice = R"({"name": "a", "refine": [0.5, 2], "of": "lattice"})";
+  const std::string membranes = R"({"name": "a", "refine": [0.5, 2], "of": "membranes"})";
+  CHECK(counts(capsule_scene(), lattice, "segments") == std::vector<Json>{{{4, 8}, 13}, {{16, 32}, 13}});
+  CHECK(counts(capsule_scene(), membranes, "segments") == std::vector<Json>{{{8, 16}, 7}, {{8, 16}, 26}});
+  CHECK(counts(sphere_scene(), lattice, "triangles") == std::vector<Json>{{{4, 8, 4}, 320}, {{16, 32, 16}, 320}});
+  CHECK(counts(sphere_scene(), membranes, "triangles") == std::vector<Json>{{{8, 16, 8}, 80}, {{8, 16, 8}, 1280}});
+  const Axis alone = axes_of("[" + membranes + "]", sphere_scene())[0];
+  CHECK(labels(alone) == Words{"80", "1280"});
+  CHECK_FALSE(alone.refines);  // what it tends to is not the truth, but the lattice's answer
+  CHECK(axes_of("[" + lattice + "]", sphere_scene())[0].refines);
+}
+
+TEST_CASE("what cannot be refined as the axis wants is refused with what can be done") {
+  Json open = sphere_scene(), mesh = sphere_scene();
+  open["cell_types"]["capsule"].erase("triangles");
+  mesh["cell_types"]["capsule"] = {{"shape", {{"mesh", {{"file", "cell.obj"}}}}}};
+  const std::string both = R"([{"name": "a", "refine": [1, 2]}])";
+  for (const char* of : {"lattice", "membranes"})
+    CHECK(refusal(R"([{"name": "a", "refine": [1], "of": ")" + std::string(of) + "\"}]", open)
+              .find("follow the lattice") != std::string::npos);
+  CHECK(refusal(both, mesh).find("a mesh from a file, which cannot be divided") != std::string::npos);
+  CHECK(refusal(R"([{"name": "a", "refine": [1], "of": "membranes"}])").find("the scene has no cells") !=
+        std::string::npos);
+  CHECK(labels(axes_of(R"([{"name": "a", "refine": [1, 2], "of": "lattice"}])", mesh)[0]) == Words{"16", "32"});
+  CHECK(refusal(R"([{"name": "r", "refine": [1.3]}])", sphere_scene()).find("a multiple of 1/8") != std::string::npos);
+}
+
 TEST_CASE("without cells the labels of refining are the nodes across") {
   CHECK(labels(axes_of(R"([{"name": "rows", "refine": [1, 100]}])", couette_scene())[0]) == Words{"16", "1600"});
 }
