@@ -189,7 +189,7 @@ void draw(const fs::path& directory, const fs::path& out, const std::vector<doub
       strains.empty() ? report::even_outputs(run.times(), default_frames) : report::outputs_at(run.times(), strains);
   std::error_code error;
   fs::create_directories(out, error);
-  if (error) fail_file(out, "cannot be made", error.value());
+  if (error) rouleau::fail_file(out, "cannot be made", error.value());
   const auto write = [&](const std::string& name, const std::string& bytes) {
     files::write_file(out / name, bytes);
     std::cout << (out / name).string() << '\n' << std::flush;
