@@ -58,7 +58,8 @@ TEST_CASE("force and torque on the lattice are those of the nodes") {
 
 namespace {
 
-/// Sum of force times velocity over the lattice, less that over the nodes, for a random velocity with walls at rest.
+/// Sum of force times velocity over the lattice and the walls, less that over the nodes, for a random velocity and
+/// walls that move. What nodes give lattice and walls get.
 template <class T>
 double adjointness_error(const Coupling<T>& coupling, Membranes& m, const core::Domain<2>& domain,
                          std::mt19937& random) {
@@ -75,8 +76,19 @@ double adjointness_error(const Coupling<T>& coupling, Membranes& m, const core::
                static_cast<double>(force[1].row(y)[x]) * static_cast<double>(velocity[1].row(y)[x]);
     }
   }
-  for (int y = 0; y < ny; ++y) fill_velocity_halo<T, 2>(velocity, {y}, domain, {});
+  const WallVelocity walls{0.3, -0.7};
+  for (int y = 0; y < ny; ++y) fill_velocity_halo<T, 2>(velocity, {y}, domain, walls);
   coupling.interpolate({}, m, velocity);
+  const WallForces<2> share = coupling.wall_share(m, m.forces(), {});
+  error += share.lower[0] * walls.lower + share.upper[0] * walls.upper;
+  double lost[2] = {-share.all(0), -share.all(1)};
+  for (std::size_t i = 0; i < m.x.size(); ++i) lost[0] += m.force_x[i], lost[1] += m.force_y[i];
+  for (int k = 0; k < 2; ++k) {
+    for (int y = 0; y < ny; ++y) {
+      for (int x = 0; x < nx; ++x) lost[k] -= static_cast<double>(force[k].row(y)[x]);
+    }
+    CHECK(std::abs(lost[k]) < 100 * std::numeric_limits<T>::epsilon());
+  }
   for (std::size_t i = 0; i < m.x.size(); ++i) error -= m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
   return error;
 }

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "core/coupling/surface_coupling.hpp"
+#include "core/fluid/periodic.hpp"
 #include "shape/surface.hpp"
 #include "unit/random.hpp"
 
@@ -104,6 +105,61 @@ TEMPLATE_TEST_CASE("in three dimensions spreading and interpolation are adjoint,
       }
       CHECK(std::abs(power) < (sizeof(TestType) == 4 ? 1e-5 : 1e-13) * size);
     }
+  }
+}
+
+TEMPLATE_TEST_CASE(
+    "beside walls that move and in their corners lattice and walls get the force and the power of the nodes", "", float,
+    double) {
+  auto random = generator(86);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const Domain<3> domain(box, {true, false, false});
+  const WallVelocity walls{0.3, -0.7};
+  for (const KernelKind kernel :
+       {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::cosine4, KernelKind::sharp6}) {
+    Surfaces s = sphere_at({5, 8, 8}, random);
+    for (int i = 0; i < s.node_count(); ++i) {  // most of them in the corners
+      s.y[i] = any(random) < 0 ? any(random) / 2 + 0.2 : 16.9 + any(random) / 2;
+      s.z[i] = i % 5 == 0 ? 8 + any(random) : any(random) < 0 ? any(random) / 2 + 0.2 : 14.8 + any(random) / 2;
+    }
+    SurfaceCoupling<TestType> coupling(kernel, domain);
+    coupling.reserve(s);
+    coupling.locate({}, s, s.positions());
+    REQUIRE(coupling.escaped(s) == -1);
+    VectorField<TestType, 3> force = field<TestType>(), u = field<TestType>();
+    coupling.spread({0, box[1] * box[2]}, s, s.forces(), force);
+    for_nodes([&](int x, int y, int z) {
+      for (auto& component : u) component.row(y, z)[x] = static_cast<TestType>(any(random));
+    });
+    for (int z = 0; z < box[2]; ++z) {
+      for (int y = 0; y < box[1]; ++y) fill_velocity_halo<TestType, 3>(u, {y, z}, domain, walls);
+    }
+    coupling.interpolate({}, s, u);
+    // With every node next to it, a fluid that is solid at y < 2 takes nothing there.
+    const SolidNodes<3> solid(box, [](const std::array<int, 3>& node) { return node[1] < 2; });
+    const WallForces<3> share = coupling.wall_share(s, s.forces(), nullptr, {}),
+                        with_solid = coupling.wall_share(s, s.forces(), &solid, {});
+    const std::vector<double>* const given[] = {&s.force_x, &s.force_y, &s.force_z};
+    const std::vector<double>* const moved[] = {&s.velocity_x, &s.velocity_y, &s.velocity_z};
+    const double rounding = sizeof(TestType) == 4 ? 2e-4 : 1e-12;
+    double power = share.lower[0] * walls.lower + share.upper[0] * walls.upper;
+    for (int k = 0; k < 3; ++k) {
+      double lost = -share.all(k), lost_with_solid = -with_solid.all(k);
+      for (int i = 0; i < s.node_count(); ++i) {
+        power -= (*given[k])[i] * (*moved[k])[i];
+        lost += (*given[k])[i], lost_with_solid += (*given[k])[i];
+      }
+      for_nodes([&](int x, int y, int z) {
+        const auto here = static_cast<double>(force[k].row(y, z)[x]);
+        power += here * static_cast<double>(u[k].row(y, z)[x]);
+        lost -= here;
+        if (y >= 2) lost_with_solid -= here;
+      });
+      CHECK(std::abs(lost) < rounding);
+      CHECK(std::abs(lost_with_solid) < rounding);
+      CHECK(std::abs(share.all(k)) > 0.1);
+    }
+    CHECK(std::abs(power) < rounding);
   }
 }
 

@@ -1,6 +1,7 @@
 // What acts on walls, of fluid and membranes together; and that the viscosity by the walls is the one by the particles.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "core/solver/solver.hpp"
 #include "observe/energy.hpp"
@@ -27,17 +28,25 @@ struct Bench {
     solver = std::make_unique<Solver<T, Set>>(plan::make_solver_setup<D>(plan, 0), cells);
     solver->start();
   }
-  /// All populations' momentum.
-  [[nodiscard]] std::array<double, D> momentum() {
-    std::array<double, D> sum{};
+  /// Of all populations, and the size of their rounding errors, added up as if they were random.
+  struct Momentum {
+    std::array<double, D> along{};
+    double rounding = 0;
+  };
+  [[nodiscard]] Momentum momentum() {
+    Momentum sum;
     solver->fluid().settle();
     std::vector<T> values;
     for (int q = 0; q < Set::velocity_count; ++q) {
       solver->fluid().copy_populations(q, values);
-      double all = 0;
-      for (const T value : values) all += static_cast<double>(value);
-      for (int k = 0; k < D; ++k) sum[k] += Set::velocity[q][k] * all;
+      ExactSum all;
+      for (const T value : values) {
+        all.add(static_cast<double>(value));
+        sum.rounding += static_cast<double>(value) * static_cast<double>(value);
+      }
+      for (int k = 0; k < D; ++k) sum.along[k] += Set::velocity[q][k] * all.value();
     }
+    sum.rounding = static_cast<double>(std::numeric_limits<T>::epsilon()) * std::sqrt(sum.rounding);
     return sum;
   }
   [[nodiscard]] double force(int i, int axis) const {
@@ -61,30 +70,30 @@ void check_balance(const Case& c) {
   Bench<T, Set> bench(c);
   bench.start();
   bench.solver->step(40);
-  double largest_share = 0;
-  std::array<double, Set::dimension> exchanged_before{};
+  std::array<double, Set::dimension> last{};
   for (int step = 0; step < 4; ++step) {
     bench.solver->compute_forces();
-    const auto share = bench.solver->cell_tasks()->wall_share(), now = bench.solver->wall_forces();
     const auto before = bench.momentum();
+    const auto share = bench.solver->cell_tasks()->wall_share(), now = bench.solver->wall_forces();
     const FluidSetting<Set::dimension>& setting = bench.solver->fluid().setting();
     const auto body = setting.body_force;
     const auto nodes = static_cast<double>(setting.solid ? setting.solid->fluid_count() : setting.domain.nodes());
     bench.solver->advance();
     const auto after = bench.momentum();
     const auto exchanged = bench.solver->fluid().wall_forces();
+    const double rounding = 20 * after.rounding;
+    double of_share = 0;
     for (int k = 0; k < Set::dimension; ++k) {
-      if (step > 0) CHECK(now.all(k) == Approx(exchanged_before[k] + share.all(k)).margin(1e-15));
-      double given = body[k] * nodes, size = std::abs(given);
-      for (int i = 0; i < bench.cells.node_count(); ++i)
-        given += bench.force(i, k), size += std::abs(bench.force(i, k));
-      CHECK(std::abs(after[k] - before[k] - given + exchanged.all(k) + share.all(k)) <
-            (sizeof(T) == sizeof(double) ? 1e-13 : 3e-6) * (size + std::abs(exchanged.all(k))));
-      largest_share = std::max(largest_share, std::abs(share.all(k)) / size);
+      if (step > 0) CHECK(now.all(k) == Approx(last[k] + share.all(k)).margin(1e-15));  // what is observed
+      last[k] = exchanged.all(k);
+      ExactSum given;
+      given.add(body[k] * nodes);
+      for (int i = 0; i < bench.cells.node_count(); ++i) given.add(bench.force(i, k));
+      CHECK(std::abs(after.along[k] - before.along[k] - given.value() + exchanged.all(k) + share.all(k)) < rounding);
+      of_share = std::max(of_share, std::abs(share.all(k)));
     }
-    for (int k = 0; k < Set::dimension; ++k) exchanged_before[k] = exchanged.all(k);
+    CHECK(of_share > 100 * rounding);  // a balance without it would not close
   }
-  CHECK(largest_share > 1e-3);  // that a balance without it would miss
 }
 
 const std::string slip = "/numerics/slip_correction=true", area = "/numerics/area_correction=true",
@@ -135,9 +144,11 @@ TEST_CASE("the momentum that the fluid gains is what membranes and a driving for
 
 namespace {
 
-/// Means over the second half of some strain, of the walls' stresses and the particles', over viscosity times shear rate.
+/// Means over the second half of some strain, of the walls' stresses and the particles', over viscosity times shear
+/// rate; `fluid`: of the walls without what membranes hand on to them; `pairs`: of the particles, what they do to each
+/// other.
 struct Means {
-  double lower = 0, upper = 0, fluid = 0, particles = 0;
+  double lower = 0, upper = 0, fluid = 0, particles = 0, pairs = 0;
 };
 template <class Set>
 Means means_of(const Case& c, double strain) {
@@ -156,54 +167,68 @@ Means means_of(const Case& c, double strain) {
     means.lower += all.lower / unit / looks, means.upper -= all.upper / unit / looks;
     means.fluid += (fluid.lower - fluid.upper) / 2 / unit / looks;
     means.particles += 1 / static_cast<double>(looks) + bench.particle_stress() / unit / looks;
+    for (const CellRange& cell : bench.cells.cells) {
+      double force = 0, height = 0;
+      for (int i = cell.first; i < cell.end(); ++i) force += bench.force(i, 0), height += bench.cells.y[i] / cell.count;
+      means.pairs -= force * height / static_cast<double>(bench.solver->setup().domain.nodes()) / unit / looks;
+    }
     bench.solver->advance();
   }
   return means;
 }
 
 template <class Set>
-void compare_viscosities(const Case& c, double strain, bool beside) {
+void compare_viscosities(const Case& c, double strain, bool beside, bool attract = false) {
   const Means means = means_of<Set>(c, strain);
   const double walls = (means.lower + means.upper) / 2;
-  std::printf("%s: lower %.5f, upper %.5f, by particles %.5f, fluid alone %.5f\n", c.what.c_str(), means.lower,
-              means.upper, means.particles, means.fluid);
-  CAPTURE(c.what, means.lower, means.upper, means.particles, means.fluid);
+  CAPTURE(c.what, means.lower, means.upper, means.particles, means.fluid, means.pairs);
   CHECK(means.lower == Approx(means.upper).epsilon(0.01));
   CHECK(walls == Approx(means.particles).epsilon(0.01));
   CHECK(walls > 1.02);
   if (beside) CHECK(means.fluid < 0.97 * walls);
+  if (attract) CHECK(std::abs(means.pairs) > 0.03 * walls);
 }
 
 }  // namespace
 
+namespace {
+
+const std::string thick = "/numerics/tau=2";
+
+}  // namespace
+
 TEST_CASE("beside a wall both walls have one stress, and the viscosity by walls is that by particles") {
+  // What the start leaves in the fluid dies out within 500 steps.
   const std::string shear100 =
       R"(/stages=[{"name": "shear", "shear_rate": "100 1/s", "strain": 5, "start": "developed"}])";
-  compare_viscosities<D2Q9>(beside_wall("2D", {shear100}), 1, true);
-  compare_viscosities<D2Q9>(beside_wall("2D, corrected", {shear100, slip, area, sharp}), 1, true);
-  const auto space = [](std::vector<std::string> more) {
-    more.emplace_back("/numerics/density_factor=1000");
-    return in_space("3D", "3.1", "6", walls_y, more);
+  const auto plane = [&](const char* what, std::vector<std::string> more) {
+    Case c = beside_wall(what, std::move(more));
+    for (const std::string& one :
+         {shear100, std::string("/domain/nodes=[48, 48]"), thick, std::string("/numerics/density_factor=50")})
+      c.overrides.push_back(one);
+    return c;
   };
-  compare_viscosities<D3Q19>(space({}), 1, true);
+  compare_viscosities<D2Q9>(plane("2D", {}), 1, true);
+  compare_viscosities<D2Q9>(plane("2D, corrected", {slip, area, sharp}), 1, false);
+  compare_viscosities<D3Q19>(in_space("3D", "3.1", "6", walls_y, {thick, "/numerics/density_factor=111"}), 0.7, true);
 }
 
 TEST_CASE("in dense suspensions that attract the viscosity by walls is that by particles") {
   const std::string shear20 =
       R"(/stages=[{"name": "shear", "shear_rate": "20 1/s", "strain": 5, "start": "developed"}])";
-  Case plane = beside_wall("2D, attracting", {shear20});
+  Case plane = beside_wall("2D, attracting", {shear20, thick});
   plane.overrides.emplace_back(
       R"(/cells=[{"type": "rbc", "at": ["6 um", "1.7 um"]}, {"type": "rbc", "at": ["8 um", "4.8 um"]},
     {"type": "rbc", "at": ["5 um", "7.9 um"]}, {"type": "rbc", "at": ["11 um", "10.9 um"]}])");
-  plane.overrides.emplace_back("/numerics/density_factor=2500");
-  compare_viscosities<D2Q9>(plane, 1, false);
+  plane.overrides.emplace_back("/numerics/density_factor=400");
+  compare_viscosities<D2Q9>(plane, 1, false, true);
   Case space = in_space("3D, attracting", "3.2", "6", walls_y,
-                        {"/numerics/density_factor=1000", R"(/interactions=[{"between": ["capsule", "capsule"],
-    "model": "morse", "parameters": {"depth": "1e-6 J/m2"}}])"});
+                        {thick, "/numerics/density_factor=111", R"(/interactions=[{"between": ["capsule", "capsule"],
+    "model": "morse", "parameters": {"depth": "3e-7 J/m2"}}])"});
   space.overrides.emplace_back(R"(/cells=[{"type": "capsule", "at": ["2 um", "3.4 um", "3 um"]}, {"type": "capsule",
     "at": ["6 um", "8.6 um", "3 um"]}, {"type": "capsule", "at": ["8.2 um", "3.6 um", "8.8 um"]},
     {"type": "capsule", "at": ["12 um", "8.4 um", "9.2 um"]}])");
-  compare_viscosities<D3Q19>(space, 1, false);
+  compare_viscosities<D3Q19>(space, 0.7, false, true);
 }
 
 namespace {
@@ -223,7 +248,7 @@ void compare_with_energy(const Case& c) {
   CAPTURE(c.what);
   constexpr double h = 1e-5;
   const double rise = (stress_and_energy<Set>(c, h).second - stress_and_energy<Set>(c, -h).second) / (2 * h);
-  CHECK(stress_and_energy<Set>(c, 0).first == Approx(rise).epsilon(1e-6));
+  CHECK(stress_and_energy<Set>(c, 0).first == Approx(rise).epsilon(1e-5));
 }
 const std::string pair_in_plane = R"(/cells=[{"type": "rbc", "at": ["6 um", "4 um"], "angle": "10 deg"},
   {"type": "rbc", "at": ["7.5 um", "7.2 um"], "angle": "15 deg"}])";
@@ -231,7 +256,7 @@ Case pair_in_space(const std::string& domain) {
   Case c = in_space("pair in space", "6", "6", domain, {R"(/interactions=[{"between": ["capsule", "capsule"],
     "model": "morse", "parameters": {"depth": "1e-6 J/m2"}}])"});
   c.overrides.emplace_back(R"(/cells=[{"type": "capsule", "at": ["5 um", "4 um", "6 um"]},
-    {"type": "capsule", "at": ["9 um", "8.8 um", "6 um"]}])");
+    {"type": "capsule", "at": ["10.2 um", "7.4 um", "6 um"]}])");
   return c;
 }
 
