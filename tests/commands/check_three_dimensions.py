@@ -351,7 +351,9 @@ class A_tube(Case):
         flow = [row for row in self.rows(folder, "series.csv") if row["stage_name"] == "flow"][-1]
         self.assertAlmostEqual(float(flow["flow_rate_m2_per_s"]) * 3.5e-6 / (1e-3 * 3.14159 * 1.45e-6**2), 1, delta=0.06)
         self.assertAlmostEqual(float(flow["relative_viscosity"]), 1, delta=0.15)
-        self.assertEqual(flow["wall_stress_lower_Pa"], "nan")
+        self.assertEqual(flow["wall_stress_lower_Pa"], flow["wall_stress_upper_Pa"])  # of all of the wall: G R/2
+        driven = float(flow["pressure_gradient_Pa_per_m"]) * 1.45e-6 / 2
+        self.assertAlmostEqual(float(flow["wall_stress_lower_Pa"]) / driven, 1, delta=0.1)
         self.assertEqual(float(flow["wall_power_W_per_m"]), 0)
         self.assertAlmostEqual(float(flow["viscous_dissipation_W_per_m"]) / float(flow["body_force_power_W_per_m"]), 1,
                                delta=0.05)
