@@ -57,12 +57,12 @@ std::string overview() {
 
 int dispatch(const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
-    std::cerr << reflowed(overview(), text_width());
+    std::cerr << reflowed(overview(), text_width(100));
     return exit_code::bad_input;
   }
   const std::string& word = arguments.front();
   if (word == "--help" || word == "-h") {
-    std::cout << reflowed(overview(), text_width());
+    std::cout << reflowed(overview(), text_width(100));
     return exit_code::done;
   }
   if (word == "--version") {

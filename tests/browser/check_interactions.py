@@ -107,7 +107,7 @@ class The_result(PageOfFour):
         page = self.four()
         for value, error, words in ((0.34712, 0.0042, "0.347 ± 0.005"), (1.1749, 0.013, "1.175 ± 0.013"), (123.4, 2.1, "123 ± 3"), (-0.5, 0.03, "−0.50 ± 0.03")):
             self.assertEqual(page.run(f"withError({value}, {error})"), words)
-        for value, spread, words in ((1.1746, 0.031, "1.17"), (1.2, 0.003, "1.200"), (1.2, 0, "1.2")):
+        for value, spread, words in ((1.1746, 0.031, "1.17"), (1.2, 0.003, "1.2"), (1.2, 0, "1.2"), (1.02305, 0.0003, "1.02"), (2.36, 0.11, "2.36")):
             self.assertEqual(page.run(f"withError({value}, null, {spread})"), words)
 
 

@@ -637,7 +637,7 @@ class Commands_do_what_they_say(Case):
         self.assertTrue(shown.startswith("Four red cells gather into a rouleau and are sheared at 20 1/s\n"
                                          "  50.2 x 25.1 um, 256 x 128 nodes, 4 cells; stages: aggregate, shear\n"), shown)
         self.assertRegex(shown, r"\x1b\[32mcut short by the limit of steps at step 20 .*\x1b\[0m\n"
-                                r"the cells never touch: all 4 stay single\nlargest area drift .*\nreport: runs/\S+/report.html\n$")
+                                r"the cells never join: all 4 stay single\nlargest area drift .*\nreport: runs/\S+/report.html\n$")
         code, shown = self.on_a_terminal("--set", "/fluid/viscosity=1 m")
         self.assertEqual(code, 2, shown)
         self.assertRegex(shown, r"^\x1b\[31m.* /fluid/viscosity\x1b\[0m\n")

@@ -82,7 +82,7 @@ bool parse_command_line(const std::string& command, const std::string& help, con
     if (values.count("help") != 0) {
       std::ostringstream listed;
       listed << named(description, positional);
-      std::cout << reflowed(help, text_width()) << "\n" << folded(listed.str(), text_width());
+      std::cout << reflowed(help, text_width(100)) << "\n" << folded(listed.str(), text_width(100));
       return false;
     }
     options::notify(values);

@@ -100,14 +100,14 @@ Coloured::~Coloured() {
   static_cast<void>(colour_terminal(stream_)->mark("\x1b[0m"));
 }
 
-std::size_t text_width() {
+std::size_t text_width(std::size_t without) {
   constexpr long least = 40, most = 100;
   const char* columns = std::getenv("COLUMNS");
   long width = columns != nullptr ? std::strtol(columns, nullptr, 10) : 0;
   winsize size{};
   const int output = standard_output != nullptr ? standard_output->descriptor() : STDOUT_FILENO;
   if (width <= 0 && ::ioctl(output, TIOCGWINSZ, &size) == 0) width = size.ws_col;
-  return static_cast<std::size_t>(width <= 0 ? most : std::clamp(width, least, most));
+  return width <= 0 ? without : static_cast<std::size_t>(std::clamp(width, least, most));
 }
 
 void silence_terminal() {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <ostream>
+#include <string>
 
 namespace rouleau::command {
 
@@ -17,9 +18,9 @@ void silence_terminal();
 /// Standard output is the descriptor 1 again: for a program that this process becomes.
 void give_terminal_back();
 
-/// Characters in a line of what is printed: COLUMNS, or what the terminal has; at least 40, at most and without either
-/// 100.
-std::size_t text_width();
+/// Characters in a line of what is printed: COLUMNS, or what the terminal has, at least 40 and at most 100. Lines of what
+/// goes into a file or another program, which may look for words in them, are as long as they are: `without`.
+std::size_t text_width(std::size_t without = std::string::npos);
 
 enum class Colour { red = 31, green = 32, yellow = 33 };
 
