@@ -101,13 +101,17 @@ std::string to_text(const Plan& plan, const PlanReport& report) {
   for (const std::string& warning : report.warnings) out << "  warning: " << warning << "\n";
 
   if (plan.numerics_choice) write_choice(out, *plan.numerics_choice);
-  std::size_t longest = 5;
-  for (const Conversion& row : report.conversions) longest = std::max(longest, row.stage.size());
-  out << "\nConversions\n  " << padded("stage", longest) << padded("SI", 11) << padded("unit", 8)
-      << padded("lattice", 12) << "quantity\n";
+  const auto whole = [](const Conversion& row) { return row.quantity + (row.of.empty() ? "" : " (" + row.of + ")"); };
+  std::size_t stage = 5, quantity = 8;
   for (const Conversion& row : report.conversions) {
-    out << "  " << padded(row.stage, longest) << padded(formatted(row.si), 11) << padded(row.unit, 8)
-        << padded(formatted(row.lattice), 12) << row.quantity << (row.of.empty() ? "" : " (" + row.of + ")") << "\n";
+    stage = std::max(stage, row.stage.size());
+    quantity = std::max(quantity, whole(row).size());
+  }
+  out << "\nConversions\n  " << padded("stage", stage) << padded("quantity", quantity) << padded("SI", 10)
+      << padded("lattice", 10) << "SI unit\n";
+  for (const Conversion& row : report.conversions) {
+    out << "  " << padded(row.stage, stage) << padded(whole(row), quantity) << padded(formatted(row.si), 10)
+        << padded(formatted(row.lattice), 10) << row.unit << "\n";
   }
 
   if (!report.packings.empty()) out << "\nCells packed at random\n";
