@@ -167,6 +167,8 @@ def shown(progress: ProgressLike) -> Callable[[Progress], object]:
 
 
 def _free_directory(name: str) -> pathlib.Path:
+    if name in ("", ".", ".."):
+        raise Error("the scene has no name from which that of a directory could be made; name the directory (out)")
     for number in range(1, 1_000_000):
         directory = pathlib.Path("runs") / (name if number == 1 else f"{name}-{number}")
         if not directory.exists():
