@@ -98,13 +98,16 @@ std::vector<InteractionWell> describe_wells(const Plan& plan) {
 
 std::vector<std::array<std::string, 2>> attracting_types(const Plan& plan, const std::vector<InteractionWell>& wells) {
   std::vector<std::array<std::string, 2>> pairs;
-  const auto is_cell = [&](const std::string& name) {
-    const auto& types = plan.scene->cell_types;
-    return std::any_of(types.begin(), types.end(), [&](const scene::CellType& type) { return type.name == name; });
+  const auto add = [&](const std::array<std::string, 2>& between) {
+    const auto is_cell = [](const std::string& name) { return name != scene::wall_name && name != scene::self_name; };
+    if (is_cell(between[0]) && is_cell(between[1])) pairs.push_back(between);
   };
   for (const InteractionWell& described : wells) {
-    const auto& [a, b] = described.between;
-    if (described.well.attracts() && is_cell(a) && is_cell(b)) pairs.push_back(described.between);
+    if (described.well.attracts()) add(described.between);
+  }
+  for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
+    const PlannedModel& model = plan.interactions[i];
+    if (model.active() && !model.manifest->state.empty()) add(plan.scene->names_of(plan.scene->interactions[i]));
   }
   return pairs;
 }

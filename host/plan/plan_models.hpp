@@ -31,7 +31,8 @@ void to_json(nlohmann::json& json, const InteractionWell& described);
 /// One entry for each active interaction without a state, on which a well would depend.
 std::vector<InteractionWell> describe_wells(const Plan& plan);
 
-/// Pairs of cell types between which an interaction has a well: only these are joined where they are close.
+/// Pairs of cell types between which an interaction has a well, or remembers, as bonds do, which pull without one: only
+/// these are joined where they are close.
 std::vector<std::array<std::string, 2>> attracting_types(const Plan& plan, const std::vector<InteractionWell>& wells);
 
 /// Depth of the deepest of the plan's wells, J/m2; 0 where the interactions attract nowhere, NaN without cells and where

@@ -119,6 +119,31 @@ TEST_CASE(
   CHECK(setup.wall_interactions[0].type == 0);
 }
 
+TEST_CASE("cells are joined by wells and by bonds between them, by nothing else") {
+  using Pairs = std::vector<std::array<std::string, 2>>;
+  const auto attracting = [](const std::string& interactions) {
+    const scene::Scene scene = held_by_walls("[" + interactions + "]");
+    return make_report(make_plan(scene, plugins_of_reports())).attracting;
+  };
+  const std::string cells = R"({"between": ["rbc", "rbc"], )";
+  const std::string repulsion =
+      cells + R"("model": "repulsion", "parameters": {"strength": "1e-7 J/m2", "cutoff": "1 um"}})";
+  const std::string morse = cells + R"("model": "morse", "parameters": {"depth": "1e-8 J/m2"}})";
+  const std::string off = cells + R"("model": "morse", "parameters": {"depth": "0 J/m2"}})";
+  const std::string cut = cells + R"("model": "morse", "parameters": {"depth": "1e-8 J/m2", "cutoff": "0.4 um"}})";
+  const std::string bonds = cells + R"("model": "bridging", "parameters": {"site_density": "1e12 1/m2",
+    "bond_stiffness": "1e-7 N/m", "zero_force_distance": "0.49 um", "on_rate": "200 1/s", "off_rate": "10 1/s",
+    "cutoff": "1.5 um"}})";
+  for (const std::string& nothing : {std::string(), repulsion, off, cut, morse_wall}) {
+    INFO(nothing);
+    CHECK(attracting(nothing).empty());
+  }
+  for (const std::string& joined : {morse, bonds, repulsion + "," + morse}) {
+    INFO(joined);
+    CHECK(attracting(joined) == Pairs{{"rbc", "rbc"}});
+  }
+}
+
 TEST_CASE("potentials of walls and of cells are told apart by what they act between") {
   const scene::Scene scene = held_by_walls("[" + morse_cells + "," + morse_wall + "]");
   const Plan plan = make_plan(scene, plugins_of_reports());
