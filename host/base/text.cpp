@@ -170,7 +170,7 @@ std::size_t length_of(std::string_view text) {
 /// Where a line goes on that is too long: below its last column, if that leaves room, or a little further in.
 std::size_t hanging_indent(std::string_view line, std::size_t width) {
   const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
-  std::size_t column = begin + 2;
+  std::size_t column = begin == 0 ? 0 : begin + 2;  // paragraphs stand at the border
   for (std::size_t gap = line.find("  ", begin); gap != std::string_view::npos; gap = line.find("  ", gap + 1)) {
     const std::size_t next = line.find_first_not_of(' ', gap);
     if (next != std::string_view::npos && length_of(line.substr(0, next)) <= width * 3 / 5)

@@ -43,7 +43,7 @@ std::string rounded(double value, int digits);
 std::string time_in_words(double seconds);
 
 /// Lines of more than `width` characters are broken at spaces, and go on below the last of their columns (which two
-/// spaces part) or indented by two more. No word is broken.
+/// spaces part), at the border, or indented by two more than they are. No word is broken.
 std::string folded(std::string_view text, std::size_t width);
 
 /// The same after lines that begin with a letter have been joined to those before them that do: paragraphs.

@@ -125,16 +125,16 @@ std::string to_text(const Plan& plan, const PlanReport& report) {
   out << "\nDimensionless numbers\n";
   for (const auto& [name, value] : report.dimensionless) out << "  " << padded(name, 24) << formatted(value) << "\n";
   if (!scene.fluid.inertia) {
-    out << "  Convective inertia is left out (fluid.inertia false), so the simulated Reynolds number only scales the\n"
-           "  unsteady term; the flow is Stokes flow.\n";
+    out << "  Convective inertia is left out (fluid.inertia false), so the simulated Reynolds number only scales the "
+           "unsteady term; the flow is Stokes flow.\n";
   }
   for (const LateStart& late : report.late_starts) {
-    out << "  The fluid starts from rest: " << in_words(late) << ".\n  With \"start\": \"developed\" it would not.\n";
+    out << "  The fluid starts from rest: " << in_words(late) << ". With \"start\": \"developed\" it would not.\n";
   }
   if (report.box_share) {
     out << "  Walls and images " << formatted(report.box_share->radii, "%.3g") << " radii apart add about "
         << formatted(100 * report.box_share->deformation, "%.2g")
-        << " % to the deformation in a fluid without end;\n  no error bar has that share (docs/three-dimensions.md).\n";
+        << " % to the deformation in a fluid without end; no error bar has that share (docs/three-dimensions.md).\n";
   }
 
   write_wells(out, report.wells);
