@@ -43,7 +43,6 @@ and in three
   red-cell-3d    a red cell in shear flow
   doublet-3d     two red cells that stick together and are sheared
   suspension-3d  red cells packed at random between walls that shear them
-  capsule-3d     one spherical capsule in shear flow
   tube-3d        plasma in a tube, without cells
 
 Example:

@@ -31,7 +31,6 @@ const std::array scene_templates{
     SceneTemplate{"suspension", suspension_scene},
     SceneTemplate{"suspension-3d", suspension_3d_scene},
     SceneTemplate{"capsule", capsule_scene},
-    SceneTemplate{"capsule-3d", capsule_3d_scene},
     SceneTemplate{"red-cell-3d", red_cell_3d_scene},
     SceneTemplate{"doublet-3d", doublet_3d_scene},
     SceneTemplate{"tube-3d", tube_3d_scene},

@@ -7,7 +7,7 @@ import subprocess
 
 USAGE = re.compile(r"^  (\w+) (.*?)  +(.*)$", re.MULTILINE)
 OPTION = re.compile(r"^  (--[a-z-]+)(?: (.*?))?(?:  +(.*))?$")
-KINDS, SCENES = "collision membrane interaction scene", "demo channel suspension capsule red-cell-3d doublet-3d suspension-3d capsule-3d tube-3d"  # of rouleau new
+KINDS, SCENES = "collision membrane interaction scene", "demo channel suspension capsule red-cell-3d doublet-3d suspension-3d tube-3d"  # of rouleau new
 FILES = {"SCENE", "FILE", "DIR", "MANIFEST"}
 ENVIRONMENT = {
     "ROULEAU_LAUNCHER": "none: this process is alone, whatever has started it",

@@ -58,7 +58,7 @@ class In_the_shell(unittest.TestCase):
         self.assertEqual(self.offered("rouleau", "run", "x.json", "--lock", "n"), {"notes.txt"})
         self.assertEqual(self.offered("rouleau", "report", ""), {"runs"})
         self.assertEqual(self.offered("rouleau", "new", "m"), {"membrane"})
-        self.assertEqual(self.offered("rouleau", "new", "scene", "c"), {"channel", "capsule", "capsule-3d"})
+        self.assertEqual(self.offered("rouleau", "new", "scene", "c"), {"channel", "capsule"})
         self.assertEqual(self.offered("rouleau", "plugins", "lennard"), {"lennard-jones", "lennard-jones-shifted"})
         self.assertEqual(self.offered("rouleau", "run", "x.json", "--threads", ""), set())
 
