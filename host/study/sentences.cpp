@@ -48,10 +48,20 @@ StudySentence cheapest_below(const StudyData& study, const Quantity& quantity, c
     const PointError& e = analysis.errors[i];
     return e.error + (std::isfinite(e.uncertainty) ? e.uncertainty : 0);
   };
+  /// Errors that grow again on finer grids of the line were small by chance.
+  const auto borne_out = [&](std::size_t i) {
+    for (const MethodLimit& method : analysis.by_method) {
+      const auto here = std::find(method.points.begin(), method.points.end(), i);
+      if (here == method.points.end()) continue;
+      return std::all_of(method.points.begin(), here, [&](std::size_t j) { return bound(j) <= quantity.target; });
+    }
+    return true;
+  };
   for (std::size_t i = 0; i < study.points.size(); ++i) {
     if (!std::isfinite(bound(i)) || !std::isfinite(study.points[i].wall_s)) continue;
     if (!nearest || bound(i) < bound(*nearest)) nearest = i;
-    if (bound(i) <= quantity.target && (!chosen || study.points[i].wall_s < study.points[*chosen].wall_s)) chosen = i;
+    const bool cheaper = !chosen || study.points[i].wall_s < study.points[*chosen].wall_s;
+    if (bound(i) <= quantity.target && cheaper && borne_out(i)) chosen = i;
   }
   const auto setting = [&](std::size_t i) {
     return name_of(study, study.points[i].setting) + ": " + described(study, quantity, analysis.errors[i], i) + ".";

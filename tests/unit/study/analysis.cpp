@@ -195,6 +195,17 @@ TEST_CASE("what makes the error smaller and the run shorter is free, and comes f
   CHECK(a.sensitivities[0].error_factor == Approx(8));
 }
 
+TEST_CASE("a coarse grid whose error is small by chance is not named as the cheapest setting", "[analysis]") {
+  MadeUpStudy study;  // as a red cell that turns in three dimensions: 0.6 % at 4 spacings, 3 % at 6, less from there on
+  study.schemes = {"plain"};
+  study.reference = {ReferenceKind::value, 1, 0, "known", {}};
+  study.value = [](double a, int) { return a == 10 ? 1.006 : 1 + 10 / (a * a); };
+  const QuantityAnalysis found = analyse(study.data(), 0);
+  REQUIRE(found.sentences[0].point);
+  CHECK(*found.sentences[0].point == 4);
+  CHECK(found.sentences[0].text.find("take resolution 40, scheme plain") != std::string::npos);
+}
+
 TEST_CASE("one sentence names the cheapest setting below the target and what it saves", "[analysis]") {
   MadeUpStudy study = two_schemes();
   study.reference = {ReferenceKind::value, 2, 0, "made up", {}};
