@@ -244,3 +244,21 @@ TEST_CASE("a cell type without cells changes nothing, however large it is") {
     CHECK(alone.cells[i].angle == beside.cells[i].angle);
   }
 }
+
+TEST_CASE(
+    "who waits for a packing is told how much has found room, to the end, also of one that comes to a standstill") {
+  for (const double share : {0.45, 0.85}) {
+    Packed packed(100, 80, true);
+    packed.hematocrit(0, share, 1, 0.3 * um);
+    std::vector<double> told;
+    packed.run([&](double found) { told.push_back(found); });
+    REQUIRE(told.size() > 10);
+    CHECK(told.front() < told.back());
+    CHECK(*std::max_element(told.begin(), told.end()) <= 1 + 1e-12);
+    REQUIRE(packed.shortfall.has_value() == (share > 0.5));
+    CHECK(told.back() == Approx(packed.shortfall ? packed.shortfall->hematocrit /
+                                                       hematocrit_of(packed.scene.packings[0],
+                                                                     packed.scene.cell_types[0], packed.scene.domain)
+                                                 : 1));
+  }
+}

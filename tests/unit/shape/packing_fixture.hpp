@@ -41,13 +41,13 @@ struct PackedScene {
     add(type, seed, gap).count = number;
     return self();
   }
-  Packed& run() {
+  Packed& run(const shape::PackingWatch& watch = {}) {
     for (scene::RandomPacking& packing : scene.packings) {
       packing.first = static_cast<int>(scene.cells.size());
       for (int i = 0; i < packing.count; ++i)
         scene.cells.push_back({packing.type, Eigen::Vector2d::Zero(), 0, "/cells"});
     }
-    shortfall = shape::pack(scene.domain, scene.cell_types, scene.packings, scene.cells);
+    shortfall = shape::pack(scene.domain, scene.cell_types, scene.packings, scene.cells, watch);
     return self();
   }
   /// Runs and says how long that took.
