@@ -178,7 +178,7 @@ namespace {
 /// t^2 um along z; their contact has 2 um2 and grows by 1 um2/s.
 WrittenRun spheres(bool tube) {
   Json scene = Json::parse(R"({
-    "rouleau": 1, "domain": {"size": ["40 um", "20 um", "10 um"], "nodes": [64, 32, 16]},
+    "rouleau": 1, "domain": {"size": ["40 um", "20 um", "10 um"], "nodes": [64, 32, 16], "y": "periodic"},
     "fluid": {"density": "1 g/cm3", "viscosity": "1 cP"},
     "cell_types": {"ball": {"shape": {"sphere": {"radius": "2 um"}}, "membrane": []}},
     "cells": [{"type": "ball", "at": ["5 um", "10 um", "5 um"]}, {"type": "ball", "at": ["15 um", "10 um", "5 um"]}],

@@ -137,7 +137,8 @@ TEST_CASE("a scene whose numerics are open cannot be refined, nor one with cells
   open["domain"].erase("nodes");
   untyped["cells"][0]["type"] = "no such type";
   for (const Json& scene : {open, untyped}) {
-    CHECK(refusal(axis, scene).find("the scene cannot be refined: that wants domain.nodes and the segments") !=
+    CHECK(refusal(axis, scene)
+              .find("the scene cannot be refined: that wants domain.nodes, in two dimensions the segments") !=
           std::string::npos);
   }
 }
