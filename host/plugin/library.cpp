@@ -9,12 +9,14 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <boost/dll/shared_library.hpp>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <mutex>
 #include <string>
 #include <utility>
 
@@ -69,7 +71,32 @@ fs::path library_file(const Manifest& manifest) {
 /// A file as it was when the manifest was read: what is kept of a file is kept of that, for while the process lives
 /// somebody may build the library anew.
 using Version = std::pair<fs::path, FileStamp>;
-Version version_of(const Manifest& manifest, const fs::path& file) { return {file, manifest.library_stamp}; }
+/// By the name in the manifest: what is kept is whole, whatever has become of the file. Locked, it is another's word.
+Version version_of(const Manifest& manifest) {
+  fs::path name = manifest.library;
+  if (manifest.locked) name += ':' + manifest.locked->sha256;
+  return {name, manifest.library_stamp};
+}
+
+/// What is kept of each version for as long as the process lives, whatever thread asks.
+template <class Value>
+class Kept {
+ public:
+  /// Null: nothing yet.
+  Value* find(const Version& version) {
+    const std::lock_guard lock(mutex_);
+    const auto known = values_.find(version);
+    return known == values_.end() ? nullptr : &known->second;
+  }
+  Value& put(const Version& version, Value value) {
+    const std::lock_guard lock(mutex_);
+    return values_.try_emplace(version, std::move(value)).first->second;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<Version, Value> values_;
+};
 
 /// Throws where another library lies there by now than when the manifest was read.
 void require_version(const Manifest& manifest) {
@@ -101,19 +128,19 @@ fs::path sealed(const Manifest& manifest, const fs::path& file, bool own_symbols
 
 /// Of a library that is locked: what is hashed is what is loaded, whatever happens to the file.
 fs::path sealed_copy(const Manifest& manifest, const fs::path& file) {
-  static auto& copies = *new std::map<Version, fs::path>;
-  const Version version = version_of(manifest, file);
-  if (const auto known = copies.find(version); known != copies.end()) return known->second;
-  return copies.emplace(version, sealed(manifest, file, false)).first->second;
+  static auto& copies = *new Kept<fs::path>;
+  const Version version = version_of(manifest);
+  if (const fs::path* known = copies.find(version)) return *known;
+  return copies.put(version, sealed(manifest, file, false));
 }
 
 /// Whether the loader would give back, whole or in part, what it has of another library: it knows files by name and number, and
 /// variables of inline functions and templates (C++) by name alone.
 bool takes_after_another(const fs::path& file) {
-  static bool unique_before = false;
+  static std::atomic<bool> unique_before = false;
   std::ifstream from(file, std::ios::binary);
   std::string bytes(std::istreambuf_iterator<char>(from), {});
-  const bool unique = own_unique_symbols(bytes), others = unique && std::exchange(unique_before, true);
+  const bool unique = own_unique_symbols(bytes), others = unique && unique_before.exchange(true);
   void* const former = ::dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL | RTLD_NOLOAD);
   if (former != nullptr) ::dlclose(former);
   return former != nullptr || others;
@@ -128,12 +155,7 @@ Remedy remedy_of(const Manifest& manifest, bool copied) {
   return {};
 }
 
-/// Loads for good: code of a plugin may be anywhere on a stack, and its tables live in it. Each version of a file once,
-/// though the models of every stage are made anew.
-boost::dll::shared_library& load(const Manifest& manifest, const fs::path& file) {
-  static auto& loaded = *new std::map<Version, boost::dll::shared_library>;  // never destroyed
-  const Version version = version_of(manifest, file);
-  if (const auto known = loaded.find(version); known != loaded.end()) return known->second;
+boost::dll::shared_library load(const Manifest& manifest, const fs::path& file) {
   (void)library_sha256(manifest);
   const bool copied = takes_after_another(file);
   const fs::path from = copied ? sealed(manifest, file, true) : file;
@@ -148,7 +170,7 @@ boost::dll::shared_library& load(const Manifest& manifest, const fs::path& file)
   }
   own_pages(library.native());
   require_version(manifest);
-  return loaded.emplace(version, std::move(library)).first->second;
+  return library;
 }
 
 }  // namespace
@@ -172,7 +194,13 @@ fs::path checked_library(const Manifest& manifest) {
 }
 
 rouleau_open_function load_library(const Manifest& manifest) {
-  return load(manifest, checked_library(manifest)).get<const rouleau_plugin*(std::uint32_t)>(ROULEAU_OPEN_SYMBOL);
+  // For good: code of a plugin may be anywhere on a stack, and its tables live in it. Each version of a file once, though
+  // the models of every stage are made anew.
+  static auto& loaded = *new Kept<boost::dll::shared_library>;  // never destroyed
+  const Version version = version_of(manifest);
+  boost::dll::shared_library* library = loaded.find(version);
+  if (library == nullptr) library = &loaded.put(version, load(manifest, checked_library(manifest)));
+  return library->get<const rouleau_plugin*(std::uint32_t)>(ROULEAU_OPEN_SYMBOL);
 }
 
 const rouleau_model& model_of(rouleau_open_function open, const Manifest& manifest) {
@@ -189,14 +217,12 @@ const rouleau_model& model_of(rouleau_open_function open, const Manifest& manife
 const rouleau_model& open_model(const Manifest& manifest) { return model_of(load_library(manifest), manifest); }
 
 std::string library_sha256(const Manifest& manifest) {
-  static auto& known = *new std::map<Version, std::string>;
-  std::string& hash = known[version_of(manifest, manifest.library)];
-  if (hash.empty()) {
-    const std::string found = sha256(library_file(manifest));
-    require_version(manifest);
-    hash = found;
-  }
-  return hash;
+  static auto& hashes = *new Kept<std::string>;
+  const Version version = version_of(manifest);
+  if (const std::string* known = hashes.find(version)) return *known;
+  const std::string found = sha256(library_file(manifest));
+  require_version(manifest);
+  return hashes.put(version, found);
 }
 
 std::string sha256(const fs::path& file) {
