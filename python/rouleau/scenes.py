@@ -97,7 +97,7 @@ def options_of(changes: Mapping[str, Any], scene: SceneLike) -> list[str]:
 
 def hashes_of_files(scene: SceneLike, changes: Mapping[str, Any]) -> list[str]:
     """SHA-256 of the files that the scene and its changes name, as far as they are there: part of what a run means."""
-    folder = pathlib.Path() if isinstance(scene, Mapping) else pathlib.Path(scene).parent
+    folder = pathlib.Path() if isinstance(scene, Mapping) else path_of(scene).parent
     content = scene
     if not isinstance(scene, Mapping):
         try:
@@ -118,7 +118,7 @@ def hashes_of_files(scene: SceneLike, changes: Mapping[str, Any]) -> list[str]:
 def text_of(scene: str | os.PathLike[str]) -> str:
     """The text of a scene's file; "" where it cannot be read: the program says why."""
     try:
-        return pathlib.Path(scene).read_text(encoding="utf-8-sig", errors="replace") if pathlib.Path(scene).is_file() else ""
+        return path_of(scene).read_text(encoding="utf-8-sig", errors="replace") if path_of(scene).is_file() else ""
     except OSError:
         return ""
 
@@ -141,7 +141,14 @@ def _from_here(value: Any, key: str = "") -> Any:
 
 def name_of(scene: SceneLike) -> str:
     """What a run of the scene is called where nobody says: the file's name without its ending, or "scene"."""
-    return "scene" if isinstance(scene, Mapping) else pathlib.Path(scene).stem
+    return "scene" if isinstance(scene, Mapping) else path_of(scene).stem
+
+
+def path_of(scene: str | os.PathLike[str]) -> pathlib.Path:
+    """Where a scene's file is. Throws Error for what is neither a path nor, as others have seen, a dictionary."""
+    if not isinstance(scene, (str, os.PathLike)):
+        raise Error(Fault(f"{type(scene).__name__} is no scene", "give the path of a scene's file, or a dictionary"))
+    return pathlib.Path(scene)
 
 
 @contextlib.contextmanager
@@ -149,9 +156,7 @@ def scene_file(scene: SceneLike) -> Iterator[pathlib.Path]:
     """The path of the scene's file, which for a dictionary is there for a while. Relative names of files and `plugin_dirs`
     of a dictionary are relative to the working folder."""
     if not isinstance(scene, Mapping):
-        if not isinstance(scene, (str, os.PathLike)):
-            raise Error(Fault(f"{type(scene).__name__} is no scene", "give the path of a scene's file, or a dictionary"))
-        yield pathlib.Path(scene)
+        yield path_of(scene)
         return
     content = {key: value if key in ("notes", "expected") else _from_here(value, key) for key, value in scene.items()}
     text = as_json(content)

@@ -80,9 +80,10 @@ def _run_of(scene: SceneLike, directory: pathlib.Path, changes: Mapping[str, Any
     options = options_of(changes, scene) + (["--error-bar"] if error_bars else [])
     if (directory / "scene.json").is_file():
         there = Run(directory)
-        if not fresh and there.finished and there.status != "interrupted" and _has_its_plugins(there):
+        anew = fresh or (there.finished and not _has_its_plugins(there))
+        if not anew and there.finished and there.status != "interrupted":
             return there
-        options.append("--overwrite" if fresh or not _has_its_plugins(there) else "--resume")
+        options.append("--overwrite" if anew else "--resume")
     try:
         made = simulate(scene, directory, options, progress, stop)
     except Error as error:

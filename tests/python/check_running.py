@@ -128,7 +128,8 @@ mkdir run && echo '{"status": "completed", "warnings": []}' > run/summary.json &
             error = self.assert_refused("cannot stand in a scene", rouleau.plan, small_scene(), title=value)
             self.assertEqual(error.pointer, "/title")
         for scene in (None, 3, ["a"]):
-            self.assert_refused("is no scene", rouleau.plan, scene)
+            for call in (rouleau.plan, rouleau.run, lambda scene: rouleau.sweep(scene, {"title": ["a"]})):
+                self.assert_refused("is no scene", call, scene)
         for words in ({"threads": "2"}, {"threads": 0}, {"max_steps": 2.5}, {"max_steps": -1}):
             self.assert_refused(f"{list(words)[0]} is", rouleau.run, small_scene(), "run", **words)
 
