@@ -44,7 +44,7 @@ class Refusals {
   }
   /// What the operator is refused for in a shipped scene; empty: it would be taken.
   [[nodiscard]] std::string of(const std::string& id, const std::string& name, std::vector<std::string> changes) const {
-    changes.push_back("/fluid/collision/model=" + id);
+    changes.push_back("/fluid/collision={\"model\": \"" + id + "\"}");
     const scene::Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/" + name, changes);
     const plugin::Catalog catalog({ROULEAU_PLUGINS, folder_.path()});
     try {
