@@ -104,8 +104,8 @@ TEST_CASE("whatever drives a fluid alone wants an operator that takes a force, a
        {R"(["1 N/m3", "0 N/m3", "0 N/m3"])", R"(["0 N/m3", "1 N/m3", "0 N/m3"])", R"(["0 N/m3", "0 N/m3", "1 N/m3"])"})
     CHECK_THAT(refused("", {std::string("/fluid/body_force=") + force}), Contains("fluid.body_force drives"));
   CHECK(refused(R"(, "shear_rate": "20 1/s")").empty());
-  CHECK_THAT(
-      refusals.of("org.example.no-rate", "four-cells-shear.json",
-                  {nobody, no_interaction, R"(/fluid/layers=[{"from": "0 um", "to": "9.8 um", "viscosity": "6 cP"}])"}),
-      Contains("relaxation_rate") && Contains("fluid.layers"));
+  CHECK_THAT(refusals.of("org.example.no-rate", "four-cells-shear.json",
+                         {nobody, no_interaction, R"(/stages=[{"name": "shear", "shear_rate": "20 1/s", "strain": 1}])",
+                          R"(/fluid/layers=[{"from": "0 um", "to": "9.8 um", "viscosity": "6 cP"}])"}),
+             Contains("relaxation_rate") && Contains("fluid.layers"));
 }

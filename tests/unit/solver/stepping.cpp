@@ -75,10 +75,10 @@ TEST_CASE("a solver refuses cells whose type it has no laws for, or no state of 
 
 namespace {
 
-CollisionOperator trt(bool inertia) {
+CollisionOperator trt(bool inertia, int dimension) {
   static const rouleau::plugin::Catalog catalog({ROULEAU_PLUGINS});
   static const rouleau::plugin::Manifest& manifest = catalog.find(rouleau::plugin::ModelKind::collision, "trt", {});
-  return rouleau::plugin::make_collision_operator(manifest, {0.1875}, {{}, 1, inertia});
+  return rouleau::plugin::make_collision_operator(manifest, {0.1875}, {{}, 1, inertia, dimension});
 }
 
 /// Velocity of every node before the next step; all are the same in a box without walls.
@@ -103,7 +103,7 @@ TEMPLATE_TEST_CASE("a driven fluid begins at rest, and has all of the force's mo
   size.fill(4), periodic.fill(true);
   setup.domain = {size, periodic};
   setup.inertia = GENERATE(false, true);
-  setup.collision = trt(setup.inertia);
+  setup.collision = trt(setup.inertia, D);
   setup.body_force_x = 1e-5, setup.body_force_y = -2e-5, setup.body_force_z = D == 3 ? 3e-5 : 0;
   const std::array<double, 3> force{setup.body_force_x, setup.body_force_y, setup.body_force_z};
   typename Solver<double, TestType>::Cells none;
