@@ -134,7 +134,8 @@ double surfaces_near_a_node(const scene::Scene& scene, double cutoff) {
 double cost_of_membrane_node(int dimension, const MembraneScheme& scheme) {
   if (dimension == 2) return 50e-9;
   // The triangles of a surface within the cutoff are as many as its square says.
-  double cost = 100e-9 + 3.6e-9 * scheme.cutoff * scheme.cutoff * scheme.near;
+  double cost = 100e-9;
+  if (scheme.cutoff > 0) cost += scheme.near * (100e-9 + 1.8e-9 * scheme.cutoff * scheme.cutoff);
   if (scheme.sharp_kernel) cost += 55e-9;
   if (scheme.slip_correction) cost += scheme.viscosity_contrast ? 110e-9 : 55e-9;
   if (scheme.semi_implicit) cost += 60e-9;

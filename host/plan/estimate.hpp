@@ -9,7 +9,7 @@ namespace rouleau::plan {
 /// What a membrane node's part of a step depends on, in three dimensions; in two it takes the same time in all of them.
 struct MembraneScheme {
   double cutoff = 3.7;        ///< of the interactions between cells and within them, spacings; 0: there are none
-  double near = 0.5;          ///< surfaces of other cells within the cutoff of a node, in the mean
+  double near = 0.2;          ///< surfaces of other cells within the cutoff of a node, in the mean
   bool sharp_kernel = false;  ///< of six points along each axis
   bool slip_correction = false;
   bool viscosity_contrast = false;  ///< with the slip correction: forces act beside the nodes

@@ -372,7 +372,8 @@ std::optional<BoxShare> box_share(const scene::Scene& scene) {
   for (const scene::CellPlacement& cell : scene.cells)
     radius = std::max(radius, shape::shape_radius(scene.cell_types[cell.type].shape));
   const double radii = std::min(domain.size.minCoeff(), domain.depth->size) / radius;
-  return BoxShare{radii, 0.012 * std::pow(8 / radii, 3)};
+  constexpr double least_measured = 6;
+  return BoxShare{radii, 0.012 * std::pow(8 / std::max(radii, least_measured), 3), radii < least_measured};
 }
 
 /// Of a run that takes hours; empty: it does not.

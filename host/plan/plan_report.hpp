@@ -61,7 +61,8 @@ struct LateStart {
 struct BoxShare {
   double radii;        ///< of the narrowest side
   double deformation;  ///< relative: 0.012 at 8 radii, and by the cube of them (docs/three-dimensions.md)
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(BoxShare, radii, deformation)
+  bool at_least;       ///< it was not measured in so small a box, and is more
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(BoxShare, radii, deformation, at_least)
 };
 
 struct PlanReport {

@@ -132,7 +132,8 @@ std::string to_text(const Plan& plan, const PlanReport& report) {
     out << "  The fluid starts from rest: " << in_words(late) << ". With \"start\": \"developed\" it would not.\n";
   }
   if (report.box_share) {
-    out << "  Walls and images " << formatted(report.box_share->radii, "%.3g") << " radii apart add about "
+    out << "  Walls and images " << formatted(report.box_share->radii, "%.3g") << " radii apart add "
+        << (report.box_share->at_least ? "more than " : "about ")
         << formatted(100 * report.box_share->deformation, "%.2g")
         << " % to the deformation in a fluid without end; no error bar has that share (docs/three-dimensions.md).\n";
   }

@@ -17,7 +17,7 @@ namespace rouleau::plan {
 namespace {
 
 /// Every try at least halves what exceeds a limit, or nearly keeps it.
-constexpr int most_tries = 20;
+constexpr int most_tries = 20, most_packings = 3;
 constexpr double to_spare = 1.02;
 
 /// With the slip correction plasma drains from between cells, and where wells are deeper than this share of the membranes'
@@ -119,16 +119,24 @@ ReadScene read_within_limits(const std::filesystem::path& file, const std::vecto
     faults.attempt([&] { find_model_faults(read.scene, catalog_of(read.scene), faults); });
     faults.raise();
   }
-  if (read.numerics_choice) {
-    const plugin::Catalog catalog = catalog_of(read.scene);  // numerics change no model
-    for (int tries = 0; tries < most_tries; ++tries) {
-      const NumericsBounds tighter = tightened(bounds, make_plan(read.scene, catalog, read.numerics_choice));
-      if (tighter == bounds) break;
-      bounds = tighter;
-      read = read_unpacked_scene(file, overrides, bounds);
-    }
+  if (!read.numerics_choice) {
+    shape::pack_cells(read.scene, watch);
+    return read;
   }
-  shape::pack_cells(read.scene, watch);
+  const plugin::Catalog catalog = catalog_of(read.scene);  // numerics change no model
+  const auto tighten = [&] {
+    const NumericsBounds tighter = tightened(bounds, make_plan(read.scene, catalog, read.numerics_choice));
+    if (tighter == bounds) return false;
+    bounds = tighter;
+    read = read_unpacked_scene(file, overrides, bounds);
+    return true;
+  };
+  for (int packed = 0; packed < most_packings; ++packed) {
+    for (int tries = 0; tries < most_tries && tighten(); ++tries) continue;
+    shape::pack_cells(read.scene, watch);
+    // Where they lie they may exceed a limit that cells anywhere do not.
+    if (read.scene.packings.empty() || packed + 1 == most_packings || !tighten()) break;
+  }
   return read;
 }
 

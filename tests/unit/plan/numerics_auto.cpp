@@ -489,11 +489,11 @@ TEST_CASE("cells at random in a tube are no reason to refuse numerics that are l
   const auto [scene, choice] = read_within_limits(tube, changes, shipped_plugins);
   REQUIRE(choice);
   CHECK(scene.cells.size() == 3);
-  // Cells at all heights meet the flow's different speeds before they are placed as after it.
+  // Also those that where cells lie decides.
   const Catalog catalog = shipped_plugins(scene);
   for (const Limit& limit : find_limits(make_plan(scene, catalog, choice))) {
     INFO(limit.name);
-    if (limit.remedied_by == RemediedBy::density_factor) CHECK(limit.margin > 0.5);
+    if (limit.remedied_by == RemediedBy::density_factor) CHECK(limit.margin >= 1);
   }
 }
 

@@ -294,6 +294,12 @@ TEST_CASE("a plan says what walls and images add, and that a run takes hours") {
   REQUIRE(shipped.box_share);
   // Measured: +1.2 % of D at 8 radii, +0.6 % at 10 (docs/three-dimensions.md).
   CHECK(shipped.box_share->deformation == Approx(0.012 * std::pow(8 / shipped.box_share->radii, 3)));
+  const auto small = report({R"(/domain/size=["12 um", "12 um", "12 um"])", "/domain/nodes=[32, 32, 32]",
+                             R"(/cells/0/at=["6 um", "6 um", "6 um"])"})
+                         .box_share;
+  REQUIRE(small);
+  CHECK(small->at_least);
+  CHECK(small->deformation == Approx(0.012 * std::pow(8.0 / 6, 3)));
   const std::string rest = R"(/stages=[{"name": "rest", "duration": "1 ms"}])";
   CHECK_FALSE(report({rest, "/output={}"}).box_share);
   const auto hours = [](const PlanReport& of) {
