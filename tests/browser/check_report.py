@@ -499,7 +499,8 @@ class The_page_of_a_run_in_three_dimensions(PageCase):
             fingers("touchMove", (x, y - step))
         fingers("touchEnd")
         page.wait(f"scrollY > {scroll + 30}")
-        page.run(f"scrollTo(0, {scroll})")
+        # The page may glide on for a while.
+        page.run(f"new Promise(r => {{ const still = () => {{ const y = scrollY; setTimeout(() => y === scrollY ? r(true) : still(), 100); }}; still(); }}).then(() => scrollTo(0, {scroll}))")
         page.run(Every_page_on_every_screen.DRAWN)
         self.assertEqual(page.run(self.PIXELS), first, "one finger has turned it")
         fingers("touchStart", (x - 30, y), (x + 30, y))
