@@ -24,12 +24,12 @@ function format(value, digits = 4) {
 }
 // endings.json: [ending of a name, unit, unit in which it is drawn, how many of these are one]; the Python package has it, too.
 const endingOf = name => endings.find(([ending]) => name.endsWith(ending) && !name.slice(0, -ending.length).endsWith("_per"));
-const worded = name => name.replace(/^cell_free_/, "cell-free ").replace(/_/g, " ").replace(/^./, c => c.toUpperCase());
-const named = (name, ending, unit) => worded(name.slice(0, name.length - ending.length)) + (unit ? `, ${unit}` : "");
+const plainWords = name => name.replace(/^cell_free_/, "cell-free ").replace(/_/g, " ").replace(/^./, c => c.toUpperCase());
+const wordsWithUnit = (name, ending, unit) => plainWords(name.slice(0, name.length - ending.length)) + (unit ? `, ${unit}` : "");
 /// A name in words, with its unit.
-const spelled = name => { const [ending, unit] = endingOf(name) ?? ["", ""]; return named(name, ending, unit); };
+const spelled = name => { const [ending, unit] = endingOf(name) ?? ["", ""]; return wordsWithUnit(name, ending, unit); };
 /// The same for what is drawn: {title, factor}.
-const drawnAs = name => { const [ending, , unit, factor] = endingOf(name) ?? ["", "", "", 1]; return {title: named(name, ending, unit), factor}; };
+const drawnAs = name => { const [ending, , unit, factor] = endingOf(name) ?? ["", "", "", 1]; return {title: wordsWithUnit(name, ending, unit), factor}; };
 const seconds = t => t === undefined || t === null ? "–" : t < 120 ? `${format(t, 3)} s` : t < 7200 ? `${format(t / 60, 3)} min` : `${format(t / 3600, 3)} h`;
 const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 /// Tones of lines, cells and runs: any two differ for every kind of colour blindness (tests/browser measures it).
