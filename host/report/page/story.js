@@ -4,8 +4,10 @@ const groupWords = members => members.map(m => m.join("+")).join(", ");
 /// The first output at a time of summary.json or after it; -1: there is none. Times of the page have nine digits.
 const outputAt = (run, time) => run.time_s.findIndex(t => t >= time * (1 - 1e-8));
 
-/// Whether cells attract each other, so that those that are close are joined. A run without a summary does not say.
-const attracts = run => (run.summary?.contacts?.attracting ?? []).length > 0;
+/// Whether cells attract each other, so that those that are close are joined. A run without a summary does not say; one of an
+/// earlier version says it by its wells.
+const attracts = ({summary}) => summary?.contacts ? summary.contacts.attracting.length > 0
+  : Boolean(summary) && (summary.wells?.some(well => typeof well.depth_J_m2 === "number" && !["wall", "self"].includes(well.between?.[1])) ?? true);
 /// Whether so few columns are empty that the cell-free layers are no property of the box.
 const layersAreThere = means => (means?.cell_free_layer_empty?.mean ?? 1) < .05;
 /// The changes of who is joined: none where nothing attracts.
