@@ -223,6 +223,7 @@ Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::o
 }
 
 std::vector<std::string> code_of_the_scene(const Plan& plan) {
+  if (!plugin::scenes_may_bring_plugins()) return {};
   const std::vector<std::filesystem::path>& folders = plan.scene->plugin_dirs;
   std::set<std::string> known;
   std::vector<std::string> sentences;

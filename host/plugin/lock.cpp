@@ -26,6 +26,7 @@ fs::path lock_beside(const fs::path& scene) {
 }
 
 LockedPlugin lock_plugin(const Manifest& manifest) {
+  (void)checked_library(manifest);  // it must be there now
   return {manifest.id, to_string(manifest.kind), manifest.version, library_sha256(manifest), manifest.sha256};
 }
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cstdlib>
 #include <cstring>
 
@@ -18,8 +19,11 @@ namespace {
 constexpr std::array fatal_signals = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 std::array<struct sigaction, fatal_signals.size()> handlers_before;
 
-/// Only calls that are allowed in a handler.
+/// Only calls that are allowed in a handler. Of threads that come to their end together one speaks, and ends the process
+/// while the others wait.
 void accuse(const ForeignCall& call, const char* deed) {
+  static std::atomic<bool> spoken = false;
+  if (spoken.exchange(true)) ::sleep(10);
   for (const char* part :
        {"rouleau: the plugin \"", call.model(), "\" ", deed, " in its function ", call.function(),
         ", which ends this process\n  rouleau conform MANIFEST looks for the fault; report it to the "

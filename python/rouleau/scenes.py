@@ -86,7 +86,9 @@ def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
 def settings(changes: Mapping[str, Any], scene: SceneLike) -> list[str]:
     """Assignments, POINTER=VALUE, that make these changes of the scene."""
     def placed(key: str, value: Any) -> Any:
-        return _from_here(value, pointer_of(key).rsplit("/", 1)[1]) if isinstance(scene, Mapping) else value
+        if not isinstance(scene, Mapping):
+            return value
+        return _from_here(json.loads(as_json(value, key)), pointer_of(key).rsplit("/", 1)[1])
     return [f"{pointer_of(key)}={as_json(placed(key, value), key)}" for key, value in changes.items()]
 
 
@@ -158,7 +160,8 @@ def scene_file(scene: SceneLike) -> Iterator[pathlib.Path]:
     if not isinstance(scene, Mapping):
         yield path_of(scene)
         return
-    content = {key: value if key in ("notes", "expected") else _from_here(value, key) for key, value in scene.items()}
+    content = {key: value if key in ("notes", "expected") else _from_here(value, key)
+               for key, value in json.loads(as_json(scene)).items()}
     text = as_json(content)
     try:
         temporary = tempfile.TemporaryDirectory(prefix="rouleau-")

@@ -362,7 +362,7 @@ class One_voice(Case):
                 return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, timeout=60,
                                       env={**as_rank, **more})
 
-            self.assertEqual(answer("verify", "NO-SUCH-RUN").returncode, 4)
+            self.assertEqual(answer("verify", "NO-SUCH-RUN").returncode, 2)
             self.assertIn("NO-SUCH-RUN", answer("verify", "NO-SUCH-RUN").stderr)
             for command in (("study", "none.json"), ("limits", "none.json"), ("new", "scene", "x", "--dir", self.path)):
                 self.assert_refused(answer(*command), 2, "cannot be cut into ranks", "ROULEAU_LAUNCHER=none")

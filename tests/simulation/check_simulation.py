@@ -369,7 +369,7 @@ class Somebodys_plugin(Case):
     def build(self, factor=1.0, deed="", to="plugin/libsoft.so", more=()):
         (self.path / "soft.c").write_text("double factor_of_model(void);\n" + SOFT)
         subprocess.run(["cc", "-std=gnu11", "-O1", "-fPIC", "-shared", f"-DFACTOR={factor}", f"-DDEED={deed}", "-I",
-                        SOURCE / "sdk", "soft.c", *more, "-o", to], check=True, cwd=self.path)
+                        SOURCE / "sdk/include", "soft.c", *more, "-o", to], check=True, cwd=self.path)
 
     def simulation(self, **more):
         return rouleau.Simulation(self.scene, plugins=[self.plugin], **self.changes, **more)
@@ -422,7 +422,7 @@ class Somebodys_plugin(Case):
 
     def test_that_comes_with_a_scene_is_said_and_can_be_refused(self):
         self.build()
-        brought = {**self.changes, "plugin_dirs": [str(self.plugin)]}
+        brought = {**self.changes, "/plugin_dirs": [str(self.plugin)]}
         with self.assertWarnsRegex(UserWarning, "the scene brings code along.*libsoft.so"):
             rouleau.Simulation(self.scene, **brought)
         os.environ["ROULEAU_SCENE_PLUGINS"] = "no"
