@@ -39,7 +39,7 @@ TEST_CASE("who leaks under attraction is told all that helps, and nothing that i
   CHECK(Planned({depth("1e-8")}).against_attraction() ==
         "set numerics.slip_correction and numerics.area_correction to true");
   CHECK(Planned({depth("1e-8"), slip, area}).against_attraction().empty());
-  CHECK_THAT(Planned({depth("2e-4")}).against_attraction(), Contains("lower the attraction to a depth of 6e-05 J/m2"));
+  CHECK_THAT(Planned({depth("2e-4")}).against_attraction(), Contains("lower the attraction to a depth of 5e-05 J/m2"));
   CHECK(Planned({"/interactions=[]"}).against_attraction().empty());
   // Of the last stage, whose factor is that of the scene.
   CHECK_THAT(Planned({depth("2e-5")}).against_attraction(1), !Contains("/stages/0"));
