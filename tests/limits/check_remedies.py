@@ -183,6 +183,13 @@ class A_remedy_ends_its_failure(Case):
                                             (get(with_limits("adhesion.json")[1], "/matrix/0/pointer"), ratio))
                 self.check(f"{depth} J/m2, {ratio}", scene, "area_drift", "area_correction")
 
+    def test_cells_in_space_that_attract_each_other_and_leak(self):
+        for ratio in ("1.2 cP", "6 cP") if ALL else ("6 cP",):
+            scene, _ = with_limits("contact-3d.json", (DEPTH, "2e-5 J/m2"), ("/cells/1/at/1", "6.6 um"),
+                                   ("/stages", [{"name": "rest", "duration": "60 ms"}]), ("/output", {}),
+                                   ("/cell_types/rbc/interior_viscosity", ratio))
+            self.check(f"in space, {ratio}", scene, "area_drift", "area_correction")
+
     @unittest.skipUnless(ALL, "long")
     def test_pairs_at_rest_without_what_holds_them(self):
         for case in with_limits("adhesion-at-rest.json")[1]["cases"]:
