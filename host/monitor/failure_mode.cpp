@@ -189,7 +189,8 @@ std::string mode_sentence(const monitor::Failure& failure) {
     return text;
   }
   if (mode.name == "collapse" && failure.reason != "crossing") return "it happened where two membranes are in contact";
-  if (mode.name == "sound" && failure.reason != "mach") return "no membrane is near: the fluid itself fails";
+  if (mode.name == "sound" && failure.reason != "mach")
+    return failure.cell < 0 ? "no membrane is near: the fluid itself fails" : "the fluid oscillates from node to node";
   return "";
 }
 
@@ -213,7 +214,7 @@ std::string mode_remedy(const monitor::Failure& failure, bool semi_implicit, con
   if (mode.name == "collapse" && failure.reason != "mach") {
     return against_attraction.empty() ? lower + ", raise the resolution, or stiffen bending" : against_attraction;
   }
-  if (mode.name == "sound" && failure.reason != "mach") {
+  if (mode.name == "sound" && failure.reason != "mach" && failure.cell < 0) {
     return "raise numerics.tau, take the \"trt\" collision, or " + lower;
   }
   return "";

@@ -32,6 +32,7 @@ WAYS = [  # what a remedy may say, and the change of the scene that it means
     (r"lower ([\w./]+)(?: and ([\w./]+))? to (\S+?)(?=,|$| and)",
      lambda s, a, b, value: [put(s, key, float(value)) for key in (a, b) if key]),
     (r"lower ((?:numerics\.|/stages/\d/)density_factor)(?! to| and)", lambda s, key: put(s, key, get(s, key) / 2)),
+    (r"take the (\w+) kernel and about one segment for each spacing", lambda s, kernel: put(s, "numerics.kernel", kernel)),
     (r"take more (segments|triangles)", lambda s, what: [kind.pop(what) for kind in s["cell_types"].values()]),
 ]
 
@@ -55,7 +56,7 @@ def put(scene, pointer, value):
 
 def applied(remedy, scene):
     """The scene with all that the first way of the remedy says: what stands before ", or"."""
-    first = re.split(r", or |, so far", remedy)[0]
+    first = re.split(r", or | or set|, so far|; lower", remedy)[0].split(": ")[-1]
     changed = copy.deepcopy(scene)
     rest = first
     for pattern, change in WAYS:
@@ -198,6 +199,16 @@ class A_remedy_ends_its_failure(Case):
             del scene["interactions"][1]
             scene["stages"][0]["density_factor"] *= 4
             self.check(case["name"], scene, "area_drift", '["rbc", "self"]')
+
+    def test_membranes_beyond_the_stable_stiffness(self):
+        """A little beyond the edges of limits/stretching.json and kernels.json."""
+        modulus = "/cell_types/rbc/membrane/0/parameters/shear_modulus"
+        for reason, *settings in (("mach", ("/numerics/tau", 2), (modulus, "1.4e-5 N/m")),
+                                  ("energy_growth", ("/numerics/tau", 2), (modulus, "2e-3 N/m"),
+                                   ("/numerics/coupling", "semi-implicit")),
+                                  ("energy_growth", ("/numerics/kernel", "linear2"), (modulus, "1e-6 N/m"))):
+            with self.subTest(settings):
+                self.check(str(settings), with_limits("stretching.json", *settings)[0], reason)
 
     def test_an_attraction_beyond_all_bounds(self):
         scene, _ = with_limits("adhesion.json", (DEPTH, "6e-3 J/m2"), ("/stages/0/duration", "2 ms"))
