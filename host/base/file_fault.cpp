@@ -25,6 +25,8 @@ Remedy remedy(int error) {
       return {"check that every part of the path before the last is a directory"};
     case ELOOP:
       return {"it is a link, and what it leads to is not this run's to change: remove the link"};
+    case ENXIO:
+      return {"it is a pipe that nobody reads: remove it"};
     case EMFILE:
     case ENFILE:
       return {"close other files, or raise the limit (ulimit -n)"};

@@ -121,8 +121,9 @@ Checksum require(const std::filesystem::path& file, const FileMark& mark) {
 }
 
 AppendFile::AppendFile(std::filesystem::path file, Kept kept) : file_(std::move(file)), kept_(kept) {
-  const int number = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_CLOEXEC, 0666);
+  const int number = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
   if (number < 0) fail_file(file_, "cannot be created", errno);
+  ::fcntl(number, F_SETFL, O_APPEND);  // only to open it is not waited for
   stream_.reset(::fdopen(number, "a"));
   if (!stream_) {
     const int error = errno;

@@ -363,6 +363,9 @@ class Files_of_others(TrustCase):
                     page.unlink()
                 (run / name).unlink()
             kept.rename(run / name)
+        (run / "log.jsonl").unlink()
+        os.mkfifo(run / "log.jsonl")
+        self.assert_stops(self.rouleau.run("run", self.file, "--out", run, "--resume", *SHORT), 4, "a pipe that nobody reads")
 
 
 if __name__ == "__main__":

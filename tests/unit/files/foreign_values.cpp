@@ -103,4 +103,5 @@ TEST_CASE("a file of a run that is a link to elsewhere, or a pipe, is not read")
   CHECK_THROWS_WITH(files::StoredTable(run / "pipe.csv"), Contains("it is a pipe"));
   CHECK_THROWS_WITH(files::open_frames(run / "frames.h5"), Contains("it is a pipe"));
   CHECK_THROWS_WITH(files::checksum_of(run / "pipe.csv"), Contains("it is a pipe"));
+  CHECK_THROWS_WITH(files::AppendFile(run / "pipe.csv"), Contains("a pipe that nobody reads"));
 }
