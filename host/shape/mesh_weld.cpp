@@ -40,7 +40,7 @@ int weld(TriangleSurface& surface, double distance) {
       if (direction.dot(way) > distance) break;
       if (++compared > 1000L * count) throw std::invalid_argument("too many of its nodes lie at nearly the same place");
       if (!(way.norm() <= distance)) continue;
-      const auto [lower, higher] = std::minmax(first_of(different[a]), first_of(different[b]));
+      const auto [lower, higher] = std::minmax({first_of(different[a]), first_of(different[b])});
       first[higher] = lower;
     }
   }
