@@ -52,7 +52,7 @@ void require_own(const std::filesystem::path& file) {
   std::error_code gone;
   const auto real = std::filesystem::canonical(file, gone);
   const auto folder = std::filesystem::canonical(file.has_parent_path() ? file.parent_path() : ".", gone);
-  if (gone || real.parent_path() == folder) return;  // what is not there is missed by whoever reads it
+  if (real.empty() || real.parent_path() == folder) return;  // what is not there is missed by whoever reads it
   throw Error(Cause::input_output, Place{file.string()},
               "is a link to " + in_quotes(real.string()) + ", and a run's files lie in its own directory",
               {"put a copy of that file in the link's place, if it belongs to the run"});
