@@ -526,13 +526,16 @@ def _part(group: h5py.Group, name: str) -> Any:
     links, key = group.id.links, name.encode()
     if not links.exists(key):  # `in` would follow the link
         return None
-    kind = links.get_info(key).type
-    own = kind == h5py.h5l.TYPE_HARD
-    if kind == h5py.h5l.TYPE_EXTERNAL:
+    kind, part = links.get_info(key).type, None
+    if kind == h5py.h5l.TYPE_HARD:
+        part = group[name]
+    if kind == h5py.h5l.TYPE_EXTERNAL:  # step by step: there may be other links on the way
         folder = pathlib.Path(group.file.filename).resolve().parent
-        file = (folder / os.fsdecode(links.get_val(key)[0])).resolve()
-        own = file.parent == folder and file.is_file()
-    part = group[name] if own else None
+        file, path = map(os.fsdecode, links.get_val(key))
+        if (folder / file).resolve().parent == folder and (folder / file).is_file():
+            part = _opened(folder / file)
+            for step in filter(None, path.split("/")):
+                part = part if part is None else _part(part, step)
     if part is None or (isinstance(part, h5py.Dataset) and (part.is_virtual or part.external)):
         raise Error(Fault(f"{group.name}/{name} leads to another file: it is damaged", "do not use this run unless you "
                           "trust whoever made it", str(group.file.filename)), exit_code=4)

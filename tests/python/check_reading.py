@@ -382,7 +382,7 @@ class A_run_of_somebody_else(Case):
             os.mkfifo(self.run_folder / name)
             with contextlib.suppress(rouleau.Error):
                 run = rouleau.open(self.run_folder)
-                print(run.summary, run.series, run.log)
+                self.assertTrue((run.summary, run.series, run.log))
             (self.run_folder / name).unlink()
             kept.rename(self.run_folder / name)
 
