@@ -134,16 +134,20 @@ fs::path sealed_copy(const Manifest& manifest, const fs::path& file) {
   return copies.put(version, sealed(manifest, file, false));
 }
 
-/// Whether the loader would give back, whole or in part, what it has of another library: it knows files by name and number, and
+/// Whether the loader would give back, whole or in part, what this has loaded before: it knows files by name and number, and
 /// variables of inline functions and templates (C++) by name alone.
 bool takes_after_another(const fs::path& file) {
   static std::atomic<bool> unique_before = false;
+  static auto& loaded = *new Kept<bool>;
   std::ifstream from(file, std::ios::binary);
   std::string bytes(std::istreambuf_iterator<char>(from), {});
-  const bool unique = own_unique_symbols(bytes), others = unique && unique_before.exchange(true);
-  void* const former = ::dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL | RTLD_NOLOAD);
-  if (former != nullptr) ::dlclose(former);
-  return former != nullptr || others;
+  bool another = own_unique_symbols(bytes) && unique_before.exchange(true);
+  const FileStamp stamp = stamp_of(file);
+  for (const Version& name : {Version{file, {}}, Version{{}, {stamp[0], stamp[1]}}}) {  // device and number
+    another = another || loaded.find(name) != nullptr;
+    loaded.put(name, true);
+  }
+  return another;
 }
 
 /// What to do where the loader does not take a file that is a library.
