@@ -29,7 +29,9 @@ template double flow_rate(const core::Fluid<double, core::D3Q19>&);
 double apparent_viscosity(double flow_rate, double body_force, const plan::StageSetting& setting, int height) {
   const double viscosity = core::viscosity_of(setting.tau);
   const double alone = body_force * std::pow(height, 3) / (12 * viscosity);
-  return flow_rate != 0 ? alone / flow_rate : std::nan("");
+  // In its first step a fluid at rest comes to flow at the force times the height.
+  const bool flows = std::abs(flow_rate) > 1e-3 * std::abs(body_force) * height;
+  return flows ? alone / flow_rate : std::nan("");
 }
 
 std::map<int, int> aggregate_sizes(const std::vector<int>& label) {

@@ -21,7 +21,7 @@ template <class T, class Set>
 double flow_rate(const core::Fluid<T, Set>& fluid);
 
 /// Flow rate of the suspending fluid alone, G H^3 / (12 mu) of plane Poiseuille flow, over `flow_rate` (lattice): the
-/// relative apparent viscosity of a driven suspension. Not a number where nothing flows.
+/// relative apparent viscosity of a driven suspension. Not a number where nothing flows but rounding.
 double apparent_viscosity(double flow_rate, double body_force, const plan::StageSetting& setting, int height);
 
 /// Number of aggregates by their number of cells, from a label for each cell.
