@@ -33,7 +33,9 @@ herr_t visit(unsigned, const H5E_error2_t* entry, void* client) {
 }
 
 /// Lets a link lead to a file in the same folder alone, where the segments of a run lie, and keeps the name of another.
-herr_t stay_in_folder(const char* from, const char*, const char* to, const char*, unsigned*, hid_t, void* foreign) {
+herr_t stay_in_folder(const char* from, const char*, const char* to, const char*, unsigned* flags, hid_t,
+                      void* foreign) {
+  *flags = H5F_ACC_RDONLY;  // HDF5 refuses those of a file that is being made
   const std::filesystem::path file = std::filesystem::absolute(from).parent_path();
   std::error_code gone;
   const auto real = std::filesystem::canonical(file / to, gone), folder = std::filesystem::canonical(file, gone);
