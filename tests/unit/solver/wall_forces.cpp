@@ -236,6 +236,34 @@ TEST_CASE("beside a wall both walls have one stress, and the viscosity by walls 
                              false);
 }
 
+TEST_CASE("beside a wall that moves what walls put in is what viscosity takes and what is stored") {
+  for (const std::vector<std::string>& corrections : {std::vector<std::string>{shear}, {shear, contrast, slip, area}}) {
+    Bench<double, D2Q9> bench(beside_wall("ledger", corrections));
+    bench.start();
+    bench.solver->step(1500);
+    const auto look = [&] {
+      bench.solver->compute_forces();
+      bench.solver->fluid().settle();
+      return observe::observe_energy(*bench.solver, bench.plan.stages[0].units);
+    };
+    const double half = bench.plan.stages[0].units.time / 2;
+    const observe::EnergySnapshot first = look();
+    observe::EnergySnapshot last = first;
+    double given = 0, lost = 0;
+    for (int step = 0; step < 300; ++step) {
+      bench.solver->advance();
+      const observe::EnergySnapshot now = look();
+      given += (last.wall_power + now.wall_power) * half;
+      lost += (last.viscous_dissipation + now.viscous_dissipation) * half;
+      last = now;
+    }
+    CAPTURE(corrections.size(), given, lost, last.total - first.total);
+    CHECK(std::abs(given - lost - (last.total - first.total)) < 1e-4 * given);
+    const auto share = bench.solver->cell_tasks()->wall_share();
+    CHECK(std::abs(share.lower[0]) > 0.02 * std::abs(bench.solver->wall_forces().lower[0]));
+  }
+}
+
 TEST_CASE("in dense suspensions that attract the viscosity by walls is that by particles") {
   const std::string shear20 =
       R"(/stages=[{"name": "shear", "shear_rate": "20 1/s", "strain": 5, "start": "developed"}])";
