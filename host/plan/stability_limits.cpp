@@ -66,8 +66,8 @@ constexpr std::array<TableEntry, 3> contact_limit{{{0.6, 0.65}, {1.0, 1.46}, {2.
 constexpr double deepest_well_of_bare_surfaces = 250;
 
 // Times radius^2 in spacings, at viscosity ratio 5: a cell in shear 0.05 to 0.1 (4 to 14 spacings), in a tube 0.1 (10), 22 cells at
-// 25 % 0.3 (10). At ratio 1 a cell leaks 0.11, at 0.02 0.4.
-constexpr double leak_of_one = 0.1, leak_of_many = 0.3;
+// 25 % 0.3 to 0.5 (10). At ratio 1 a cell leaks 0.11, at 0.02 0.4.
+constexpr double leak_of_one = 0.1, leak_of_many = 0.5;
 
 // Narrowest well, in spacings. Cells at rest settle even in wells of a twelfth of a spacing; but where segments are one
 // spacing long, their corners catch on each other in a narrower one: sliding along a rim of 5 spacings radius meets 2 %
