@@ -155,7 +155,7 @@ Remedy remedy_of(const Manifest& manifest, bool copied) {
   struct statvfs disk {};
   if (::statvfs(manifest.library.c_str(), &disk) == 0 && (disk.f_flag & ST_NOEXEC) != 0)
     return {"its disk is mounted without the right to execute (noexec): put the plugin on another one"};
-  if (copied) return {"it is loaded as a copy, for this process has loaded another version of it: begin a new one"};
+  if (copied) return {"it is loaded as a copy, because another version of it is there already: begin a new process"};
   return {};
 }
 
