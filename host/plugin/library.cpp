@@ -98,9 +98,9 @@ class Kept {
   std::map<Version, Value> values_;
 };
 
-/// Throws where another library lies there by now than when the manifest was read.
+/// Throws where another library lies there by now than when the manifest was read. A lock says more: which one it must be.
 void require_version(const Manifest& manifest) {
-  if (stamp_of(manifest.library) == manifest.library_stamp) return;
+  if (manifest.locked || stamp_of(manifest.library) == manifest.library_stamp) return;
   refuse(manifest, "has changed since its manifest was read", {"begin anew, when nobody writes to it any more"});
 }
 
@@ -224,7 +224,8 @@ std::string library_sha256(const Manifest& manifest) {
   static auto& hashes = *new Kept<std::string>;
   const Version version = version_of(manifest);
   if (const std::string* known = hashes.find(version)) return *known;
-  const std::string found = sha256(library_file(manifest));
+  const fs::path file = library_file(manifest);
+  const std::string found = sha256(manifest.locked ? sealed_copy(manifest, file) : file);
   require_version(manifest);
   return hashes.put(version, found);
 }
