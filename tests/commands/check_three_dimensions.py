@@ -130,12 +130,13 @@ class A_run_in_three_dimensions(Case):
 
     def test_that_is_plane_is_the_run_in_two(self):
         plane, space = self.run_scene(PLANE, "plane"), self.run_scene(SPACE, "space")
+        at_rest = 1e-20  # populations hold half of a step's force, 1e-5 and less, with 16 digits
         for a, b in zip(self.series(plane), self.series(space), strict=True):
             for column in ("flow_rate_m2_per_s", "wall_stress_lower_Pa", "wall_stress_upper_Pa", "shear_rate_1_per_s",
                            "relative_viscosity", "kinetic_energy_J_per_m", "viscous_dissipation_W_per_m",
                            "wall_power_W_per_m", "body_force_power_W_per_m", "mach_max"):
                 self.assertAlmostEqual(float(b[column]), float(a[column]), msg=column,
-                                       delta=1e-9 * abs(float(a[column])) + 1e-22) if a[column] != "nan" else \
+                                       delta=1e-9 * abs(float(a[column])) + (at_rest if column == "mach_max" else 1e-22)) if a[column] != "nan" else \
                     self.assertEqual(b[column], "nan", column)
         try:
             import h5py
