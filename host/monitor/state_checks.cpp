@@ -252,7 +252,8 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, 
                         : failure("non_finite", place(node[0], node[1]), -1, std::nan(""), 0,
                                   "the fluid holds a value that is no number", blown_up_remedy(*setting.stage));
     if constexpr (Set::dimension == 3) found.place_z = units::coordinate(node[2], units.length);
-    if (std::isfinite(mach) && !cells.cells.empty()) {
+    const bool by_walls = units::mach_number(setting.fastest_wall()) > scene.checks.mach;
+    if (std::isfinite(mach) && !by_walls && !cells.cells.empty()) {
       core::Surroundings<Set::dimension> around = solver.cell_tasks()->surroundings();
       blame_contact(found, around, plan, setting);
     }
