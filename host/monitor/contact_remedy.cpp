@@ -95,7 +95,7 @@ std::string attraction_remedy(const plan::Plan& plan, const plan::StageSetting& 
   if (!attracts) return "";
   if (!scene.numerics.slip_correction || !scene.numerics.area_correction)
     ways.emplace_back("set numerics.slip_correction and numerics.area_correction to true");
-  // In three dimensions the slip correction leaks with other kernels: pairs at rest 2 % and more, with this one 0.2 %.
+  // In three dimensions the slip correction leaks with other kernels: pairs at rest 2 % and more, with this one 0.2 to 0.8 %.
   if (scene.domain.depth && scene.numerics.kernel != "sharp6") ways.emplace_back("set numerics.kernel to \"sharp6\"");
   const double deepest = deepest_over_shear_modulus * plan::shear_modulus(plan);
   if (depth > deepest) {
