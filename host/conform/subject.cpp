@@ -146,16 +146,27 @@ plugin::ModelSetting Subject::typical_setting() const {
   const double length = 0.1955e-6, density = 1000, viscosity = 1.2e-6, relaxation = 3000;  // m, kg/m3, m2/s, 1
   const double simulated_density = density * relaxation;
   const double time = length * length / (6 * viscosity / relaxation);
-  return {{length, time, simulated_density * length * length * length}, 1, false, dimension_};
+  return {{length, time, simulated_density * length * length * length}, 1, false, dimension()};
+}
+
+std::vector<plugin::ModelSetting> Subject::settings() const {
+  std::vector<plugin::ModelSetting> all = {typical_setting()};
+  if (manifest_.kind != plugin::ModelKind::collision) return all;
+  all.push_back(all[0]);
+  all[1].inertia = true;
+  all[1].relaxation_rate = 1.3;
+  return all;
 }
 
 std::vector<plugin::ModelInstance> Subject::make_each_choice() const {
   std::vector<plugin::ModelInstance> instances;
-  for (const auto& values : parameters_of_each_choice()) {
-    try {
-      instances.push_back(make(values));
-    } catch (const plugin::ModelRefused&) {  // a word that goes only with other values of other parameters
-      if (instances.empty()) throw;          // typical ones go together
+  for (const plugin::ModelSetting& setting : settings()) {
+    for (const auto& values : parameters_of_each_choice()) {
+      try {
+        instances.push_back(make(values, setting));
+      } catch (const plugin::ModelRefused&) {  // a word that goes only with other values of other parameters
+        if (instances.empty()) throw;          // typical ones go together
+      }
     }
   }
   return instances;
