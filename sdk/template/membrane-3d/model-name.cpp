@@ -10,8 +10,9 @@ struct ModelType {
   template <class S>
   rouleau::Stress<S> operator()(const rouleau::Triangle<S>& triangle) const {
     const S y = 1.0 / (triangle.invariant_2 + 1.0), q = triangle.invariant_1 - 1.0 + y, growth = G * exp(a * q);
-    return {0.5 / a * G * expm1(a * q), 0.5 * growth,          -0.5 * growth * y * y,
-            0.5 * a * growth,           -0.5 * a * growth * y * y, growth * y * y * y * (1.0 + 0.5 * a * y)};
+    return {0.5 / a * G * expm1(a * q), 0.5 * growth,
+            -0.5 * growth * y * y,      0.5 * a * growth,
+            -0.5 * a * growth * y * y,  growth * y * y * y * (1.0 + 0.5 * a * y)};
   }
 };
 ROULEAU_MEMBRANE(ModelType, "model-id", "1.0.0")

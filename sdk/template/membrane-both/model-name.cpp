@@ -10,15 +10,17 @@ struct ModelType {
   template <class S>
   rouleau::Stress<S> operator()(const rouleau::Triangle<S>& triangle) const {
     const S y = 1.0 / (triangle.invariant_2 + 1.0), q = triangle.invariant_1 - 1.0 + y, growth = G * exp(a * q);
-    return {0.5 / a * G * expm1(a * q), 0.5 * growth,          -0.5 * growth * y * y,
-            0.5 * a * growth,           -0.5 * a * growth * y * y, growth * y * y * y * (1.0 + 0.5 * a * y)};
+    return {0.5 / a * G * expm1(a * q), 0.5 * growth,
+            -0.5 * growth * y * y,      0.5 * a * growth,
+            -0.5 * a * growth * y * y,  growth * y * y * y * (1.0 + 0.5 * a * y)};
   }
 
   template <class S>
   rouleau::Tension<S> operator()(const rouleau::Segment<S>& segment) const {
     const S e = segment.stretch, by = 1.0 / e, root = e - by, q = root * root, growth = G * exp(a * q);
     const S slope = e - by * by * by;  // half of dq/de
-    return {0.5 / a * G * expm1(a * q), growth * slope, growth * (1.0 + 3.0 * by * by * by * by + 2.0 * a * slope * slope)};
+    return {0.5 / a * G * expm1(a * q), growth * slope,
+            growth * (1.0 + 3.0 * by * by * by * by + 2.0 * a * slope * slope)};
   }
 };
 ROULEAU_MEMBRANE(ModelType, "model-id", "1.0.0")
