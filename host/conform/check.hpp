@@ -53,7 +53,6 @@ struct Check {
   std::vector<const char*> after;  ///< checks without which this one tells nothing; they stand before it in the list
   Finding (*run)(const Subject&);
   std::optional<plugin::ModelKind> kind = {};  ///< for models of this kind only
-  bool once = false;                           ///< sees files and the table alone, which are the same in each dimension
 };
 
 // The checks of each file of this folder; `all_checks` puts them in order.

@@ -259,7 +259,8 @@ def main():
     equivalent = json.loads((HERE / "equivalent.json").read_text())
     listed, formulas = list(listed_mutants()), list(formula_mutants())
     mutants = listed + formulas[::options.every] + list(in_space(listed + formulas[4::options.every]))[::4]
-    mutants = [m for m in mutants if m["name"] not in equivalent and options.only in (None, m["class"])]
+    mutants = [m for m in mutants if not {m["name"], m["name"].removesuffix("-in-space")} & set(equivalent) and
+               options.only in (None, m["class"])]
     if options.list:
         print("\n".join(f"{m['class']} {m['name']}" for m in mutants))
         return 0

@@ -86,7 +86,7 @@ Finding fluid_independent(const Subject& subject) {
 Finding bias(const Subject& subject) {
   if (!subject.manifest().claims.value("conservative", true))
     return Finding::skipped("says that it is not conservative");
-  constexpr std::size_t count = 100'000;
+  constexpr std::size_t count = 50'000;
   double of_weights = 0;
   for (const double weight : VelocitySet::of(subject.dimension()).weight) {
     of_weights += std::abs(static_cast<float>(weight) - weight);
