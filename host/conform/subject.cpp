@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "call.hpp"
+#include "plugin/quantities.hpp"
 
 namespace rouleau::conform {
 
@@ -195,6 +196,11 @@ std::vector<std::string> Subject::output_arrays() const {
   return names;
 }
 
+std::vector<std::string> Subject::drawn() const {
+  if (!manifest_.needs.empty()) return manifest_.needs;
+  return {plugin::inputs_of(manifest_.kind, dimension()).front()};
+}
+
 Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t count, Random& random,
                               int steps) const {
   const double cutoff =
@@ -225,7 +231,7 @@ Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t
                                                                    {"sliding_speed", {0, 1e-3}}};
   Values inputs;
   const auto draw_all = [&] {
-    for (const auto& need : manifest_.needs) {
+    for (const auto& need : drawn()) {
       const auto [low, high] = ranges.at(need);
       for (const auto& name : arrays_of(*this, need)) {
         set(inputs, name, count, [&, low = low, high = high] {
@@ -282,6 +288,7 @@ Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t
 Values Subject::any_inputs(std::size_t count, Random& random) const {
   Values inputs;
   for (const std::string& name : input_arrays()) set(inputs, name, count, [&] { return any_double(random); });
+  if (inputs.empty()) inputs[drawn().front()].assign(count, 0);
   return inputs;
 }
 

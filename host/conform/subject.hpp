@@ -86,6 +86,8 @@ class Subject {
   [[nodiscard]] std::vector<std::string> input_arrays() const;
   [[nodiscard]] std::vector<std::string> output_arrays() const;
 
+  /// The manifest's needs; of a model without any its kind's first input, which it is not given: values count elements.
+  [[nodiscard]] std::vector<std::string> drawn() const;
   /// Inputs as flowing cells and fluids have them, in lattice units. State is what `steps` with other random inputs make
   /// of its initial value.
   [[nodiscard]] Values random_inputs(const plugin::ModelInstance& instance, std::size_t count, Random& random,

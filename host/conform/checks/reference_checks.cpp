@@ -79,6 +79,7 @@ Reference read(const Subject& subject, const Entry& entry) {
     if (!given.contains(name)) entry.refuse(" gives no value for the input " + name);
     entry.add(reference.inputs, name, given[name], setting.units, plugin::dimension_of(manifest, name));
   }
+  if (manifest.needs.empty()) reference.inputs[subject.drawn().front()] = {1};
   const Json& outputs = entry.json["outputs"];
   for (std::size_t k = 0; k < manifest.state.size(); ++k) {
     const plugin::StateVariable& variable = manifest.state[k];
