@@ -1,6 +1,6 @@
 // The program that runs one conformance check of one plugin; `rouleau conform` starts it, once for every check.
 //
-// usage: conform-check MANIFEST CHECK SEED
+// usage: conform-check MANIFEST CHECK SEED DIMENSION
 // The check of surroundings adds a WORLD (conform/worlds.hpp), and the program itself one word more when it is there.
 // The finding goes to file descriptor 3 (conform/report_line.hpp). Whatever the plugin does ends with this process.
 #include <sys/prctl.h>
@@ -80,10 +80,11 @@ void watch_signals() {
 }
 
 /// `world`: null, or the number of the world that was entered, whose text goes to the parent instead of a finding.
-conform::Finding run(const std::string& name, const std::string& file, std::uint64_t seed, const char* world) {
+conform::Finding run(const std::string& name, const std::string& file, std::uint64_t seed, int dimension,
+                     const char* world) {
   try {
     const units::Units units;
-    const conform::Subject subject(plugin::read_manifest(file, units), seed);
+    const conform::Subject subject(plugin::read_manifest(file, units), seed, dimension);
     if (world != nullptr) {
       conform::send(conform::outputs_in_world(subject, static_cast<unsigned>(std::stoul(world))));
       conform::end_process(0);
@@ -105,8 +106,9 @@ conform::Finding run(const std::string& name, const std::string& file, std::uint
 }  // namespace
 
 int main(int count, char** words) {
-  if (count < 4 || count > 6) {
-    std::cerr << "usage: conform-check MANIFEST CHECK SEED\nrouleau conform starts this program; see its --help\n";
+  if (count < 5 || count > 7) {
+    std::cerr
+        << "usage: conform-check MANIFEST CHECK SEED DIMENSION\nrouleau conform starts this program; see its --help\n";
     return 2;
   }
   if (conform::find_check(words[2]) == nullptr) {
@@ -118,8 +120,10 @@ int main(int count, char** words) {
   setrlimit(RLIMIT_CORE, &no_core);
   watch_signals();
   conform::limit_system_calls(conform::Allowed::all_but_exit);
-  if (count == 5) conform::enter_world(static_cast<unsigned>(std::strtoul(words[4], nullptr, 10)), count, words);
-  conform::send(run(words[2], words[1], std::strtoull(words[3], nullptr, 10), count > 4 ? words[4] : nullptr));
+  if (count == 6) conform::enter_world(static_cast<unsigned>(std::strtoul(words[5], nullptr, 10)), count, words);
+  const int dimension = std::strtol(words[4], nullptr, 10) == 3 ? 3 : 2;
+  conform::send(
+      run(words[2], words[1], std::strtoull(words[3], nullptr, 10), dimension, count > 5 ? words[5] : nullptr));
   // Not through static destructors: they are the plugin's, too, and the finding has been sent.
   conform::end_process(0);
 }

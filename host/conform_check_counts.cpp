@@ -215,8 +215,8 @@ std::clock_t clock() noexcept {
 }
 char* getenv(const char* name) noexcept {
   const rouleau::ForeignCall* foreign = rouleau::ForeignCall::current();
-  // What the SDK asks for itself; a run obeys it and notes it.
-  if (std::strcmp(name, "ROULEAU_INSTRUCTION_SET") == 0) foreign = nullptr;
+  // What the SDK asks for itself, which a run obeys and notes, and what Fortran's library does when it is loaded.
+  if (std::strcmp(name, "ROULEAU_INSTRUCTION_SET") == 0 || std::strncmp(name, "GFORTRAN_", 9) == 0) foreign = nullptr;
   if (foreign != nullptr && std::strchr(foreign->function(), ' ') == nullptr && counts.asked[0] == '\0') {
     std::strncpy(counts.asked, name, sizeof counts.asked - 1);
   }

@@ -31,7 +31,8 @@ constexpr const char* new_help = R"(usage: rouleau new KIND NAME [options]
 Makes a folder with the source, the manifest and the CMakeLists.txt of a new model: a small one that works and passes its
 conformance tests as it is, to be changed into yours. Prints the commands that build, test and use it.
 KIND is collision, membrane or interaction. NAME is the model's id, a reverse domain name such as org.example.yukawa, or
-a plain name; folder and files have the name of its last part. Nothing is ever overwritten.
+a plain name; folder and files have the name of its last part. Nothing is ever overwritten. A membrane law is of
+segments, in two dimensions, or with --dimensions of triangles in three, or of both.
 
 With the KIND scene: writes a scene that runs as it is, TEMPLATE.json or NAME.json. A word that is no template's is the
 name of a scene like demo. TEMPLATE is, in two dimensions,
@@ -47,28 +48,42 @@ and in three
 
 Example:
   rouleau new interaction org.example.yukawa
+  rouleau new membrane org.example.stiff --dimensions both
   rouleau new scene suspension-3d
   rouleau new scene channel --name first
 )";
 
 struct Template {
   const char* kind;
+  const char* dimensions;  ///< of a membrane law, as the option has them; others have one template
   const std::string_view& source;
   const std::string_view& manifest;
-  const char* setting;  ///< of a run of the four-cell scene that uses the model
+  const char* scene;
+  const char* setting;  ///< of a run of that scene that uses the model
 };
 
 const std::array templates{
-    Template{"collision", collision_source, collision_manifest, R"(/fluid/collision={"model": "model-id"})"},
-    Template{"membrane", membrane_source, membrane_manifest, R"(/cell_types/rbc/membrane/0={"model": "model-id"})"},
-    Template{"interaction", interaction_source, interaction_manifest, "/interactions/0/model=model-id"},
+    Template{"collision", "", collision_source, collision_manifest, "four-cells-shear.json",
+             R"(/fluid/collision={"model": "model-id"})"},
+    Template{"membrane", "2", membrane_source, membrane_manifest, "four-cells-shear.json",
+             R"(/cell_types/rbc/membrane/0={"model": "model-id"})"},
+    Template{"membrane", "3", membrane_3d_source, membrane_3d_manifest, "capsule-3d.json",
+             R"(/cell_types/capsule/membrane/0={"model": "model-id"})"},
+    Template{"membrane", "both", membrane_both_source, membrane_both_manifest, "four-cells-shear.json",
+             R"(/cell_types/rbc/membrane/0={"model": "model-id"})"},
+    Template{"interaction", "", interaction_source, interaction_manifest, "four-cells-shear.json",
+             "/interactions/0/model=model-id"},
 };
 
-const Template& template_of(const std::string& kind) {
+/// `dimensions`: the option, empty where it is not given.
+const Template& template_of(const std::string& kind, const std::string& dimensions) {
   std::vector<std::string> kinds;
   for (const Template& entry : templates) {
-    if (kind == entry.kind) return entry;
-    kinds.emplace_back(entry.kind);
+    if (kind == entry.kind && (dimensions.empty() || dimensions == entry.dimensions)) return entry;
+    if (kinds.empty() || kinds.back() != entry.kind) kinds.emplace_back(entry.kind);
+  }
+  if (kind == "membrane") {
+    throw Error(Cause::bad_input, "rouleau new membrane: --dimensions is 2, 3 or both, not " + in_quotes(dimensions));
   }
   kinds.emplace_back("scene");
   throw Error(Cause::bad_input, "rouleau new: there is no kind " + in_quotes(kind) + did_you_mean(kind, kinds) +
@@ -157,7 +172,7 @@ void print_next_steps(const fs::path& folder, const Template& model, const Name&
   std::error_code error;
   const fs::path& shared = installation().data;
   const bool has_sdk = fs::exists(shared / "cmake/Rouleau/RouleauConfig.cmake", error);
-  const fs::path installed_scene = shared / "rouleau/scenes/four-cells-shear.json";
+  const fs::path installed_scene = shared / "rouleau/scenes" / model.scene;
   const std::string scene = fs::exists(installed_scene, error) ? in_shell(installed_scene.string()) : "SCENE.json";
   const std::string source = in_shell(folder.string()), build = in_shell((folder / "build").string());
   std::cout << "Made " << folder.string() << " with " << name.file << ".cpp, " << name.file
@@ -183,7 +198,7 @@ void print_next_steps(const fs::path& folder, const Template& model, const Name&
 
 int new_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
-  std::string kind, second, name, directory = ".";
+  std::string kind, second, name, dimensions, directory = ".";
   std::optional<std::string> id;
   options::options_description description("options");
   options::positional_options_description positional;
@@ -194,17 +209,23 @@ int new_command(const std::vector<std::string>& arguments) {
   description.add_options()("second", options::value(&second), "TEMPLATE of a scene whose name stands before it");
   description.add_options()("name", options::value(&name)->value_name("NAME")->notifier(not_empty("--name")),
                             "of a scene: its file's, without the ending");
+  description.add_options()("dimensions", options::value(&dimensions)->value_name("N"),
+                            "of a membrane law: 2 (when left out), 3 or both");
   description.add_options()("dir", options::value(&directory)->value_name("DIR")->notifier(not_empty("--dir")),
                             "make folder or scene in this folder instead of the working directory");
   positional.add("kind", 1).add("id", 1).add("second", 1);
   if (!parse_command_line("new", new_help, arguments, description, positional)) return 0;
 
+  if (!dimensions.empty() && kind != "membrane") {
+    throw Error(Cause::bad_input,
+                "rouleau new " + kind + ": --dimensions is for membrane laws, whose elements differ; leave it out");
+  }
   if (kind == "scene") {
     const SceneWords words = scene_words(id, second, name);
     new_scene(directory, words.name, words.from);
     return exit_code::done;
   }
-  const Template& model = template_of(kind);
+  const Template& model = template_of(kind, dimensions);
   if (!id) throw Error(Cause::bad_input, "a NAME is missing", {"rouleau new --help lists the options"});
   if (!second.empty() || !name.empty()) {
     throw Error(Cause::bad_input, "rouleau new " + kind + " NAME: a template or --name, here " +

@@ -8,7 +8,8 @@ namespace rouleau::command {
 // In all of them ModelType stands for the name of the C++ type, model-name for that of the files and model-id for the
 // manifest's id.
 extern const std::string_view collision_source, collision_manifest;
-extern const std::string_view membrane_source, membrane_manifest;
+extern const std::string_view membrane_source, membrane_manifest, membrane_3d_source, membrane_3d_manifest;
+extern const std::string_view membrane_both_source, membrane_both_manifest;
 extern const std::string_view interaction_source, interaction_manifest;
 extern const std::string_view plugin_build_file;
 

@@ -60,10 +60,12 @@ Finding run(const Check& check, const Subject& subject) {
 }
 
 bool worse(const Finding& a, const Finding& b) {
-  const auto rank = [](Verdict verdict) { return verdict == Verdict::pass ? 1 : (verdict == Verdict::skip ? 0 : 2); };
-  if (a.verdict != b.verdict && (rank(a.verdict) != 2 || rank(b.verdict) != 2))
-    return rank(a.verdict) > rank(b.verdict);
-  if (a.verdict != b.verdict) return a.verdict == Verdict::fail;  // and not only to be warned of
+  const auto rank = [](Verdict verdict) {
+    constexpr std::array rising = {Verdict::skip,    Verdict::pass,  Verdict::warn,
+                                   Verdict::timeout, Verdict::crash, Verdict::fail};
+    return std::find(rising.begin(), rising.end(), verdict) - rising.begin();
+  };
+  if (a.verdict != b.verdict) return rank(a.verdict) > rank(b.verdict);
   const auto share = [](const Finding& f) { return f.measured && f.limit ? *f.measured / *f.limit : 0; };
   return share(a) > share(b);
 }

@@ -29,6 +29,7 @@ struct CheckResult {
 struct Conformance {
   std::filesystem::path file;
   std::string id, version, kind;  ///< empty when the manifest cannot be read
+  std::vector<int> dimensions = {2};
   std::vector<CheckResult> results;
 
   /// How many checks ended with a verdict.

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "call.hpp"
+#include "plugin/quantities.hpp"
 
 namespace rouleau::conform {
 
@@ -146,16 +147,27 @@ plugin::ModelSetting Subject::typical_setting() const {
   const double length = 0.1955e-6, density = 1000, viscosity = 1.2e-6, relaxation = 3000;  // m, kg/m3, m2/s, 1
   const double simulated_density = density * relaxation;
   const double time = length * length / (6 * viscosity / relaxation);
-  return {{length, time, simulated_density * length * length * length}, 1, false, dimension_};
+  return {{length, time, simulated_density * length * length * length}, 1, false, dimension()};
+}
+
+std::vector<plugin::ModelSetting> Subject::settings() const {
+  std::vector<plugin::ModelSetting> all = {typical_setting()};
+  if (manifest_.kind != plugin::ModelKind::collision) return all;
+  all.push_back(all[0]);
+  all[1].inertia = true;
+  all[1].relaxation_rate = 1.3;
+  return all;
 }
 
 std::vector<plugin::ModelInstance> Subject::make_each_choice() const {
   std::vector<plugin::ModelInstance> instances;
-  for (const auto& values : parameters_of_each_choice()) {
-    try {
-      instances.push_back(make(values));
-    } catch (const plugin::ModelRefused&) {  // a word that goes only with other values of other parameters
-      if (instances.empty()) throw;          // typical ones go together
+  for (const plugin::ModelSetting& setting : settings()) {
+    for (const auto& values : parameters_of_each_choice()) {
+      try {
+        instances.push_back(make(values, setting));
+      } catch (const plugin::ModelRefused&) {  // a word that goes only with other values of other parameters
+        if (instances.empty()) throw;          // typical ones go together
+      }
     }
   }
   return instances;
@@ -182,6 +194,11 @@ std::vector<std::string> Subject::output_arrays() const {
   }
   for (std::size_t k = 0; k < manifest_.state.size(); ++k) names.push_back("state." + std::to_string(k));
   return names;
+}
+
+std::vector<std::string> Subject::drawn() const {
+  if (!manifest_.needs.empty()) return manifest_.needs;
+  return {plugin::inputs_of(manifest_.kind, dimension()).front()};
 }
 
 Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t count, Random& random,
@@ -214,7 +231,7 @@ Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t
                                                                    {"sliding_speed", {0, 1e-3}}};
   Values inputs;
   const auto draw_all = [&] {
-    for (const auto& need : manifest_.needs) {
+    for (const auto& need : drawn()) {
       const auto [low, high] = ranges.at(need);
       for (const auto& name : arrays_of(*this, need)) {
         set(inputs, name, count, [&, low = low, high = high] {
@@ -271,6 +288,7 @@ Values Subject::random_inputs(const plugin::ModelInstance& instance, std::size_t
 Values Subject::any_inputs(std::size_t count, Random& random) const {
   Values inputs;
   for (const std::string& name : input_arrays()) set(inputs, name, count, [&] { return any_double(random); });
+  if (inputs.empty()) inputs[drawn().front()].assign(count, 0);
   return inputs;
 }
 

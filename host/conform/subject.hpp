@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -35,18 +36,19 @@ inline std::size_t some_count(Random& random) {
 
 class Subject {
  public:
-  Subject(plugin::Manifest manifest, std::uint64_t seed)
-      : manifest_(std::move(manifest)), seed_(seed), dimension_(manifest_.works_in(2) ? 2 : 3) {}
-  /// The same on the lattice of so many dimensions, which a collision operator's manifest names.
-  [[nodiscard]] Subject on_lattice(int dimension) const {
-    Subject other = *this;
-    other.dimension_ = dimension;
-    return other;
+  /// The model as scenes of that dimension have it, one of those that its manifest names.
+  Subject(plugin::Manifest manifest, std::uint64_t seed, int dimension)
+      : whole_(std::move(manifest)), manifest_(whole_.in(dimension)), seed_(seed) {}
+  /// The same in the other dimension; nothing if the model works in one only.
+  [[nodiscard]] std::optional<Subject> in_other_dimension() const {
+    const int other = 5 - dimension();
+    return whole_.works_in(other) ? std::optional<Subject>({whole_, seed_, other}) : std::nullopt;
   }
 
+  /// What it needs, gives and is checked by in this dimension.
   [[nodiscard]] const plugin::Manifest& manifest() const { return manifest_; }
   [[nodiscard]] std::uint64_t seed() const { return seed_; }
-  [[nodiscard]] int dimension() const { return dimension_; }
+  [[nodiscard]] int dimension() const { return manifest_.dimension(); }
   /// A generator that starts anew at each call: a check's inputs depend on the seed alone.
   [[nodiscard]] Random random() const { return Random(seed_); }
 
@@ -62,6 +64,8 @@ class Subject {
 
   /// A lattice as the shipped scenes have it: 20 spacings to a cell's radius, tau 1, no inertia.
   [[nodiscard]] plugin::ModelSetting typical_setting() const;
+  /// That one and, of a collision operator, one with inertia and another relaxation rate.
+  [[nodiscard]] std::vector<plugin::ModelSetting> settings() const;
 
   [[nodiscard]] plugin::ModelInstance make() const { return make(typical_parameters()); }
   [[nodiscard]] plugin::ModelInstance make(const std::vector<double>& parameters) const {
@@ -71,12 +75,9 @@ class Subject {
                                            const plugin::ModelSetting& setting) const {
     return {manifest_, parameters, setting};
   }
-  /// Instances with typical parameters and, in turn, with each other word of each choice; those that the model refuses
-  /// are left out.
+  /// Instances of each setting with typical parameters and, in turn, with each other word of each choice; those that the
+  /// model refuses are left out.
   [[nodiscard]] std::vector<plugin::ModelInstance> make_each_choice() const;
-
-  /// The same model as one of its dimensions has it.
-  [[nodiscard]] Subject in(int dimension) const { return {manifest_.in(dimension), seed_}; }
 
   /// Whether calls are in single precision: those that the model computes in.
   [[nodiscard]] std::vector<bool> precisions() const;
@@ -85,6 +86,8 @@ class Subject {
   [[nodiscard]] std::vector<std::string> input_arrays() const;
   [[nodiscard]] std::vector<std::string> output_arrays() const;
 
+  /// The manifest's needs; of a model without any its kind's first input, which it is not given: values count elements.
+  [[nodiscard]] std::vector<std::string> drawn() const;
   /// Inputs as flowing cells and fluids have them, in lattice units. State is what `steps` with other random inputs make
   /// of its initial value.
   [[nodiscard]] Values random_inputs(const plugin::ModelInstance& instance, std::size_t count, Random& random,
@@ -93,9 +96,8 @@ class Subject {
   [[nodiscard]] Values any_inputs(std::size_t count, Random& random) const;
 
  private:
-  plugin::Manifest manifest_;
+  plugin::Manifest whole_, manifest_;
   std::uint64_t seed_;
-  int dimension_;
 };
 
 /// Arrays that stand for a quantity of the manifest: "force" of a collision operator is "force.0" and "force.1", and on

@@ -168,9 +168,13 @@ void allow_memory(SyscallFilter& filter) {
   filter.allow_if(SYS_rt_sigaction, 1, 0);  // asking which handler there is
   filter.allow_if(SYS_prlimit64, 2, 0);     // asking for a limit
   for (const std::uint32_t output : {STDOUT_FILENO, STDERR_FILENO}) {
-    for (const long number : {SYS_write, SYS_writev, SYS_newfstatat}) filter.allow_if(number, 0, output);
+    for (const long number : {SYS_write, SYS_writev}) filter.allow_if(number, 0, output);
+  }
+  for (const std::uint32_t stream :
+       {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {  // asking what it is, as Fortran does
+    filter.allow_if(SYS_newfstatat, 0, stream);
 #ifdef SYS_fstat
-    filter.allow_if(SYS_fstat, 0, output);
+    filter.allow_if(SYS_fstat, 0, stream);
 #endif
   }
 }

@@ -48,7 +48,7 @@ std::string outputs(const Subject& subject, int fill) {
   Random random = subject.random();
   Painter painter(fill);
   paint_stack(fill);
-  for (const Trial& trial : trials(subject, random, subject.typical_setting(), 3)) {
+  for (const Trial& trial : setting_trials(subject, random, 3)) {
     lines += '#' + trial.words + '\n';
     if (subject.manifest().kind == plugin::ModelKind::interaction) {
       paint_stack(fill);
@@ -140,9 +140,10 @@ std::string outputs_in_world(const Subject& subject, unsigned other) {
 std::string outputs_of_process(const Subject& subject, unsigned other) {
   constexpr double time_limit_s = 60;
   const std::string manifest = std::filesystem::absolute(subject.manifest().file).string();
-  const ProcessEnd end =
-      run_process("/proc/self/exe", {manifest, "surroundings", std::to_string(subject.seed()), std::to_string(other)},
-                  time_limit_s);
+  const ProcessEnd end = run_process("/proc/self/exe",
+                                     {manifest, "surroundings", std::to_string(subject.seed()),
+                                      std::to_string(subject.dimension()), std::to_string(other)},
+                                     time_limit_s);
   if (end.signal == 0 && end.exit_code == 0 && !end.timed_out) return end.finding;
   if (end.finding.starts_with('{')) return end.finding;
   return to_json({Verdict::crash, "the process ends in other surroundings", {}, {}}).dump();

@@ -116,11 +116,20 @@ Parameter read_number(const json::Document& document, const std::string& at, con
   return parameter;
 }
 
+/// What plugin.h has for surfaces of triangles, and no host does.
+const std::vector<std::string> of_later_hosts = {"invariant_1_rate", "invariant_2_rate", "shear_viscosity",
+                                                 "area_viscosity"};
+
 void check_names(const json::Document& document, const std::string& at, const char* list,
                  const std::vector<std::string>& names, const std::vector<std::string>& known,
                  const Manifest& manifest) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (holds(known, names[i])) continue;
+    if (manifest.dimension() == 3 && holds(of_later_hosts, names[i])) {
+      refuse(document, at + '/' + list + '/' + std::to_string(i),
+             in_quotes(names[i]) +
+                 " is in the interface, but membranes in three dimensions do not have it yet; leave it out");
+    }
     refuse(document, at + '/' + list + '/' + std::to_string(i),
            std::string("\"") + list + "\" of a " + to_string(manifest.kind) + " model" +
                (manifest.dimension() == 3 ? " in three dimensions" : "") + " cannot hold " + in_quotes(names[i]) +
@@ -237,6 +246,11 @@ void check_dimensions(const json::Document& document, const Manifest& manifest) 
   }
   if (manifest.kind == ModelKind::collision && document.root().contains("dimensions")) {
     refuse(document, "/dimensions", "a collision operator names its lattices; leave \"dimensions\" to other models");
+  }
+  if (manifest.kind == ModelKind::membrane && manifest.works_in(3) && !manifest.state.empty()) {
+    refuse(document, "/state/0",
+           "a membrane law in three dimensions cannot remember " + in_quotes(manifest.state[0].name) +
+               " yet; leave \"state\" out, or give \"dimensions\": [2]");
   }
   const bool both = manifest.works_in(2) && manifest.works_in(3), membrane = manifest.kind == ModelKind::membrane;
   if (manifest.in_3d && !(membrane && both)) {

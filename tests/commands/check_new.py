@@ -90,6 +90,17 @@ class New_makes_a_model(Case):
                 text = text.replace(mark, word)
             self.assertEqual((self.desk / f"stiff/stiff{suffix}").read_text(), text)
 
+    def test_of_a_membrane_in_the_dimensions_that_are_asked_for(self):
+        for word, dimensions in (("2", None), ("3", [3]), ("both", [2, 3])):
+            words = self.new("membrane", f"org.example.of-{word}", "--dimensions", word)
+            manifest = json.loads((self.desk / f"of-{word}/of-{word}.json").read_text())
+            self.assertEqual(manifest.get("dimensions"), dimensions)
+            self.assertEqual("/cell_types/capsule/" in words, word == "3")
+            result = self.call("plugins", f"org.example.of-{word}", "--json", "--plugin-dir", self.desk)
+            self.assertEqual(result.returncode, 0, result.stderr)
+        self.assert_stops(self.call("new", "membrane", "m", "--dimensions", "4"), 2, "2, 3 or both", '"4"')
+        self.assert_stops(self.call("new", "interaction", "m", "--dimensions", "3"), 2, "for membrane laws")
+
     def test_whose_type_does_not_hide_a_letter_of_the_formula(self):
         self.new("membrane", "e")
         self.assertIn("struct EModel {", (self.desk / "e/e.cpp").read_text())

@@ -74,11 +74,12 @@ EXPECTED = {
     "precision/another-rate-in-f32": ("fail", "in single and in double precision"),
     # physics of membrane laws
     "gradient/wrong-tension": ("fail", "denergy/dstretch is"),
+    "gradient/another-stress": ("fail", "(in three dimensions)"),
     "derivatives/wrong-stiffness": ("fail", "dtension/dstretch is"),
     "rest-state/under-stress": ("warn", "under stress at rest"),
     "rigid-motion/energy-of-rate": ("fail", "the energy depends on the rate"),
     "moduli/buckles": ("fail", "negative"),
-    "three-dimensions/another-stress": ("fail", "denergy/dinvariant_2 is"),
+    "clamped/another-sheet": ("fail", "clamped at the stretch"),
     "dissipation/negative-viscosity": ("fail", "negative tension_by_rate"),
     "closed-loop/dissipates-as-conservative": ("fail", "a closed cycle takes the work"),
     "degenerate/crushed": ("fail", "energy is"),
@@ -92,7 +93,7 @@ EXPECTED = {
     "units/lattice-length": ("fail", "on one lattice"),
     "roles/twice-the-modulus": ("fail", "has the role stretching_modulus"),
     "roles/reaches-half-way": ("fail", "has the role cutoff"),
-    "reference/another-number": ("fail", "the manifest's check 0 says"),
+    "reference/another-number": ("fail", "the manifest's /checks/0 says"),
     # physics of interactions
     "gradient/wrong-derivative": ("fail", "-denergy/ddistance is"),
     "derivative/wrong-sign": ("fail", "dforce/ddistance is"),
@@ -119,6 +120,7 @@ EXPECTED = {
     "read-only-inputs/writes-back": ("fail", "wrote to the input distance"),
     "outputs-optional/another-energy-without-force": ("fail", "energy["),
     "outputs-optional/needs-derivative": ("crash", "SIGSEGV"),
+    "outputs-optional/needs-velocity-in-space": ("crash", "SIGSEGV (D3Q19)"),
     "blocks/position-in-block": ("fail", "energy["),
     "blocks/size-of-block": ("fail", "each element by itself"),
     "aliasing/writes-before-reading": ("fail", "outputs over inputs"),
@@ -129,6 +131,7 @@ EXPECTED = {
     "threads/shared-buffer": ("fail", "wrong results"),
     "floating-point-mode/rounds-upward": ("fail", "compute changes the floating-point mode"),
     "quiet/allocates": ("fail", "allocations of one call"),
+    "quiet/allocates-in-space": ("fail", "(in three dimensions)"),
     "quiet/locks": ("fail", "locks taken by one call"),
     "quiet/prints": ("fail", "system call: write"),
     "quiet/reads-the-clock": ("fail", "reads the clock"),
@@ -251,6 +254,17 @@ class Nothing_is_wrong_with_the_honest_plugins(Case):
                 self.assertEqual(minded, {})
 
 
+class Honest_models_that_are_hard_to_judge(Case):
+    """Terms that cancel at the cutoff and round alike near it; states of which one is what is left of sums with another."""
+
+    def test_conform(self):
+        for name in ("honest-cosine", "honest-catch-bond"):
+            with self.subTest(name):
+                code, report = conform(PLUGINS / "honest" / name / f"{name}.json", level="publish")
+                self.assertEqual(code, 0, [check for check in report["plugins"][0]["checks"]
+                                           if check["verdict"] not in ("pass", "skip")])
+
+
 class A_check_starts_quickly(Case):
     """Some thousand of them are started here alone."""
 
@@ -279,8 +293,8 @@ class Publishing(Case):
         faults = [
             ("potential", '"checks"', '"x-checks"', "reference", "no reference numbers"),
             ("potential", '"force": 0.5,', "", "pinned", "says anything of force"),
-            ("operator", '"inertia": true', '"inertia": false', "reference", "the manifest's check 1 says"),
-            ("maxwell", '"time_step": 0.05,', "", "reference", "the manifest's check 1 says"),
+            ("operator", '"inertia": true', '"inertia": false', "reference", "the manifest's /checks/"),
+            ("maxwell", '"time_step": 0.05,', "", "reference", "the manifest's /checks/"),
             ("spring", '"reproducible": true', '"reproducible": false', "hidden-state", "claims not to be reproducible"),
         ]
         for base, text, other, by, words in faults:

@@ -5,7 +5,8 @@ usage: score.py ROULEAU BUILD_FOLDER [--only CLASS] [--sample N] [--honest RUNS]
 
 Mutants are honest plugins with one piece of text replaced. Those of mutants/*.json were thought of, class by class (in
 manifests too); those of the class "formulas" are all that a rule makes of the shipped models' sources: another operator,
-another constant, a sign less. Each is compiled and held against `rouleau conform --level publish`; it is found when that
+another constant, a sign less. Those of the class "space" are every fourth of these again, wrong in three dimensions only,
+where the plugin works in both. Each is compiled and held against `rouleau conform --level publish`; it is found when that
 does not conform. A mutant that does not compile, or whose results are the same bits as before (equivalent.json), does not
 count; one that is known to be missed (known.json) does. --sample N: N mutants of each class, but those, and 8 N runs of
 honest models, chosen by a seed that is printed; one mutant in ten may be missed, at least one. --honest: runs of honest
@@ -43,7 +44,8 @@ class Source:
         if base:
             for include in (base[1], "law", "create"):
                 self.text = self.text.replace(f'#include "{include}.h"\n', (BASES / f"{include}.h").read_text(), 1)
-            self.manifests = [BASES / f"{base[1]}.json"]
+            own = self.path.with_suffix(".json")
+            self.manifests = [own if own.exists() else BASES / f"{base[1]}.json"]
         else:
             self.manifests = sorted(self.path.parent.glob("*.json"))
 
@@ -84,6 +86,21 @@ def formula_mutants():
                        "replace": new, "name": f"{path.stem}-{start + match.start()}"}
 
 
+def in_space(mutants):
+    """The same of plugins for both dimensions, wrong in three only: what happens there is the mutant's, what happens in
+    two is that of the honest plugin."""
+    for mutant in mutants:
+        source = Source(mutant["source"])
+        manifests = [json.loads(file.read_text()) for file in source.manifests]
+        both = all(m.get("dimensions", [2, 3] if m["kind"] == "interaction" else []) == [2, 3] or
+                   len(m.get("lattices", [])) == 2 for m in manifests)
+        if "spring" in mutant["source"] or mutant.get("at", 1e9) < source.text.find("Triangle<S>"):
+            continue  # what is changed is met in two dimensions only
+        loaded = mutant["name"].startswith(("load", "constructor", "open", "exit"))  # where there is no dimension yet
+        if both and len(manifests) == 1 and mutant.get("in") != "manifest" and not loaded:
+            yield {**mutant, "class": "space", "name": mutant["name"] + "-in-space", "space": True}
+
+
 def replaced(text, mutant):
     """The text with each piece of it replaced once."""
     if "at" in mutant:
@@ -114,13 +131,32 @@ def build(folder, source, mutant):
     compiler = ["cc", "-std=gnu11", "-DPLUGIN_ID=\"mutant\""]
     if source.language == "cpp":
         compiler = ["c++", "-std=c++20", f"-Wl,--version-script={ROOT}/sdk/cmake/rouleau-plugin.map"]
-    command = ["nice", *(["ccache"] if os.environ.get("CCACHE_DIR") else []), *compiler, "-O2", "-w", "-D_GNU_SOURCE",
-               "-fPIC", "-shared", "-pthread", "-fvisibility=hidden", "-fno-math-errno", "-fno-trapping-math", "-I",
-               str(ROOT / "sdk" / "include"), str(code), "-o", str(folder / library), "-lm"]
-    done = subprocess.run(command, capture_output=True, text=True)
-    if done.returncode != 0 and VERBOSE:
-        print(done.stderr[:600])
-    return manifests if done.returncode == 0 else None
+    flags = ["-O2", "-w", "-D_GNU_SOURCE", "-fPIC", "-pthread", "-fvisibility=hidden", "-fno-math-errno",
+             "-fno-trapping-math", "-I", str(ROOT / "sdk" / "include")]
+
+    def run(*words):
+        done = subprocess.run(["nice", *(["ccache"] if os.environ.get("CCACHE_DIR") else []), *map(str, words)],
+                              capture_output=True, text=True)
+        if done.returncode != 0 and VERBOSE:
+            print(done.stderr[:600])
+        return done.returncode == 0
+
+    parts = [code]
+    if mutant and mutant.get("space"):
+        honest = folder / ("honest." + source.language)
+        honest.write_text(source.text)
+        # A C++ type of the same name would be one to the linker.
+        types = re.findall(r"ROULEAU_[A-Z]+\((\w+),", source.text)
+        renamed = {code: ["-Drouleau_open_v1=open_mutant", *(f"-D{name}={name}Mutant" for name in types)],
+                   honest: ["-Drouleau_open_v1=open_honest"]}
+        if not all(run(*compiler[:3], *flags, *words, "-c", file, "-o", f"{file}.o") for file, words in renamed.items()):
+            return None
+        glue = HERE / "in_space.c"
+        if not run("cc", *flags, "-c", glue, "-o", folder / "glue.o"):
+            return None
+        parts = [folder / "glue.o", *(f"{file}.o" for file in renamed)]
+        compiler = ["c++", f"-Wl,--version-script={ROOT}/sdk/cmake/rouleau-plugin.map"]
+    return manifests if run(*compiler, *flags, "-shared", *parts, "-o", folder / library, "-lm") else None
 
 
 def verdict(manifests, seed, publish=True):
@@ -221,8 +257,10 @@ def main():
     ROULEAU, VERBOSE = options.rouleau.resolve(), options.verbose
     print(f"seed {options.seed}", flush=True)
     equivalent = json.loads((HERE / "equivalent.json").read_text())
-    mutants = list(listed_mutants()) + list(formula_mutants())[::options.every]
-    mutants = [m for m in mutants if m["name"] not in equivalent and options.only in (None, m["class"])]
+    listed, formulas = list(listed_mutants()), list(formula_mutants())
+    mutants = listed + formulas[::options.every] + list(in_space(listed + formulas[4::options.every]))[::4]
+    mutants = [m for m in mutants if not {m["name"], m["name"].removesuffix("-in-space")} & set(equivalent) and
+               options.only in (None, m["class"])]
     if options.list:
         print("\n".join(f"{m['class']} {m['name']}" for m in mutants))
         return 0

@@ -79,15 +79,16 @@ class Templates(Case):
     def test_each_works_by_the_commands_that_rouleau_new_prints(self):
         prefix = self.install(self.path / "rouleau", *COMPONENTS)
         self.environment["PATH"] = f"{prefix / 'bin'}:{self.environment['PATH']}"
-        for kind in ("collision", "membrane", "interaction"):
-            with self.subTest(kind):
-                words = self.call(prefix / "bin/rouleau", "new", kind, f"org.example.my-{kind}")
+        for kind, *options in (["collision"], ["membrane"], ["membrane", "--dimensions", "3"], ["interaction"]):
+            with self.subTest(kind, options=options):
+                name = f"my-{kind}" + "-3d" * bool(options)
+                words = self.call(prefix / "bin/rouleau", "new", kind, f"org.example.{name}", *options)
                 configure, build, test, run = (line for line in words.splitlines() if line.startswith("  "))
                 self.call("sh", "-ec", f"{configure} && {build}")
-                self.assertEqual(shlex.split(test)[:3], ["ctest", "--test-dir", f"my-{kind}/build"])
-                self.check_conformance(self.path / f"my-{kind}/build")
-                self.call("sh", "-ec", f"{run} --max-steps 20 --out {kind}")
-                self.assertIn(f"org.example.my-{kind}", self.plugin_of(self.path / kind))
+                self.assertEqual(shlex.split(test)[:3], ["ctest", "--test-dir", f"{name}/build"])
+                self.check_conformance(self.path / f"{name}/build")
+                self.call("sh", "-ec", f"{run} --max-steps 20 --out runs/{name}")
+                self.assertIn(f"org.example.{name}", self.plugin_of(self.path / "runs" / name))
 
 
 if __name__ == "__main__":

@@ -45,20 +45,20 @@ double offset(int point, double largest) {
   return multiple * largest / std::pow(4.0, step);
 }
 
-/// All slopes of one element, with `f(point)`.
+/// All slopes of one element, with `f(point)`; `of_rounding`: what rounding of parameters and inputs does to f.
 template <class F>
-std::array<Slope, step_sizes> all_slopes(double value, double largest, const F& f) {
+std::array<Slope, step_sizes> all_slopes(double value, double largest, double of_rounding, const F& f) {
   // The first two probes lie wide apart: the line through them.
   const int first = step_sizes * 2 * reach;
   const double x0 = offset(first, largest), rise = (f(first + 1) - f(first)) / (offset(first + 1, largest) - x0);
   // Numbers below the smallest normal one have fewer digits.
-  double noise = epsilon * std::abs(f(first)) + std::numeric_limits<double>::min();
+  double noise = std::max(of_rounding, epsilon * std::abs(f(first)) + std::numeric_limits<double>::min());
   for (int p = first + 2; p < first + probes; ++p) {
     noise = std::max(noise, std::abs(f(p) - f(first) - rise * (offset(p, largest) - x0)));
   }
-  // Near to rest a function is small, but not the terms that cancel there: they are of the size that its curvature has
-  // over the whole of the variable.
-  const double curved = std::abs(f(reach) - 2 * f(first) + f(0)), ratio = std::min(std::abs(value) / largest, 50.0);
+  // Near to rest, or to a cutoff, a function is small, but not the terms that cancel there: they are of the size that its
+  // curvature has over the whole of the variable.
+  const double curved = std::abs(f(reach) - 2 * f(first) + f(0)), ratio = std::abs(value) / largest;
   noise = std::max(noise, epsilon * curved * ratio * ratio);
   // What the rounding of the abscissa itself makes of a slope, where steps are small beside it.
   const double slope = std::abs(f(reach) - f(0)) / (2 * largest);
@@ -85,6 +85,16 @@ std::array<Slope, step_sizes> all_slopes(double value, double largest, const F& 
   return result;
 }
 
+/// What rounding does to outputs where terms cancel: probes so close that they all round alike do not show it, but other
+/// roundings of the parameters do, which change each term on its own.
+Values roundings(const Subject& subject, const Trial& trial, const Values& inputs) {
+  Random random = subject.random();
+  Call call;
+  call.time_step = subject.manifest().state.empty() ? 1 : 0;
+  return sensitivity(subject, trial, inputs, random, 1, false,
+                     [&](const auto& instance, const Values& near) { return compute(subject, instance, near, call); });
+}
+
 /// A bound beyond a ten-thousandth of the slope itself is no evidence.
 bool tells(double error, double size) { return error <= 1e-4 * size; }
 
@@ -103,10 +113,11 @@ std::vector<std::array<Slope, step_sizes>> ladder(const Subject& subject, const 
   Call call;
   call.time_step = subject.manifest().state.empty() ? 1 : 0;
   const auto results = compute(subject, trial.instance, many, call).at(function);
+  const auto of_rounding = roundings(subject, trial, inputs).at(function);
   std::vector<std::array<Slope, step_sizes>> all;
   for (std::size_t i = 0; i < count; ++i) {
     all.push_back(all_slopes(inputs.at(variable)[i], largest_step(trial, variable, inputs.at(variable)[i]),
-                             [&](int p) { return results[i * points + static_cast<std::size_t>(p)]; }));
+                             of_rounding[i], [&](int p) { return results[i * points + static_cast<std::size_t>(p)]; }));
   }
   return all;
 }
@@ -119,11 +130,12 @@ void compare_derivative(Worst& worst, Decided& decided, const Subject& subject, 
   call.time_step = subject.manifest().state.empty() ? 1 : 0;
   const auto claimed = compute(subject, trial.instance, inputs, call).at(claim.derivative);
   const auto all = ladder(subject, trial, inputs, claim.function, claim.variable);
+  const auto of_rounding = roundings(subject, trial, inputs).at(claim.derivative);
   for (std::size_t i = 0; i < all.size(); ++i) {
     std::vector<Slope> telling;
     for (Slope slope : all[i]) {
       slope.value *= claim.sign;
-      slope.error += 16 * epsilon * std::abs(claimed[i]);
+      slope.error += 16 * (of_rounding[i] + epsilon * std::abs(claimed[i]));
       // Where no cell comes to, series and quadratures may end.
       const double stretch = claim.variable == "stretch" ? inputs.at("stretch")[i] : 1;
       if (stretch < 0.25 || stretch > 4) slope.error += 1e-6 * std::abs(claimed[i]);
@@ -160,7 +172,9 @@ void compare_work(Worst& worst, const Subject& subject, const Trial& trial, cons
     x[k] = low + (high - low) * static_cast<double>(k) / static_cast<double>(4 * intervals);
   }
   const Values outputs = compute(subject, trial.instance, many);
+  const Values of_rounding = roundings(subject, trial, many);
   const auto &f = outputs.at(claim.derivative), &energy = outputs.at(claim.function);
+  const auto &of_f = of_rounding.at(claim.derivative), &of_energy = of_rounding.at(claim.function);
   for (std::size_t i = 0; i < intervals; ++i) {
     const std::size_t k = 4 * i;
     const double step = x[k + 4] - x[k];
@@ -172,7 +186,8 @@ void compare_work(Worst& worst, const Subject& subject, const Trial& trial, cons
     const double size = std::abs(energy[k]) + std::abs(energy[k + 4]) + far * (std::abs(f[k]) + std::abs(f[k + 4])) +
                         far * far * std::abs(f[k + 4] - f[k]) / step;
     const double limit = 8 * std::abs(boole - simpson) + 8 * std::abs(simpson - trapezoid) + 4096 * epsilon * size +
-                         1e-8 * std::abs(work) +
+                         1e-8 * std::abs(work) + 16 * (of_energy[k] + of_energy[k + 4]) +
+                         16 * step * (of_f[k] + of_f[k + 2] + of_f[k + 4]) +
                          (1 + far) * std::numeric_limits<double>::min();  // numbers below have fewer digits
     worst.add(std::abs(gained - work), limit, [&] {
       return claim.function + " changes by " + number(gained, 17) + " where the work of " + claim.derivative + " is " +

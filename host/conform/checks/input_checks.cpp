@@ -36,6 +36,13 @@ Creation create_guarded(const Subject& subject, const std::vector<double>& value
   setup.get().parameter_names = reinterpret_cast<const char* const*>(names.data());
   setup.get().parameter_values = reinterpret_cast<const double*>(numbers.data());
   setup.get().parameter_count = static_cast<std::uint32_t>(given);
+  const std::size_t velocities = setup.get().velocity_count, axes = setup.get().dimension;
+  GuardedArray directions("the setup's velocities", velocities * axes * sizeof(double), Flush::behind);
+  GuardedArray weights("the setup's weights", velocities * sizeof(double), Flush::behind);
+  std::copy_n(setup.get().velocities, velocities * axes, reinterpret_cast<double*>(directions.data()));
+  std::copy_n(setup.get().weights, velocities, reinterpret_cast<double*>(weights.data()));
+  setup.get().velocities = reinterpret_cast<const double*>(directions.data());
+  setup.get().weights = reinterpret_cast<const double*>(weights.data());
   setup.get().struct_size = static_cast<std::uint32_t>(sizeof(rouleau_setup)) + appended;
   GuardedArray placed("the setup's struct", sizeof(rouleau_setup) + appended, Flush::behind);
   std::memset(placed.data(), 0xab, sizeof(rouleau_setup) + appended);
@@ -121,15 +128,15 @@ Finding struct_size(const Subject& subject) {
     }
   }
   Random random = subject.random();
-  const plugin::ModelInstance instance = subject.make();
-  const Values inputs = subject.random_inputs(instance, ordinary_count, random);
-  const Values expected = compute(subject, instance, inputs);
-  for (const std::uint32_t appended : {0U, 8U, 64U}) {
-    Call call;
-    call.guard = Guard::structs;
-    call.appended_bytes = appended;
-    if (const auto difference = first_difference(expected, compute(subject, instance, inputs, call));
-        !difference.empty()) {
+  for (const plugin::ModelInstance& instance : subject.make_each_choice()) {
+    const Values inputs = subject.random_inputs(instance, ordinary_count, random);
+    const Values expected = compute(subject, instance, inputs);
+    for (const std::uint32_t appended : {0U, 8U, 64U}) {
+      Call call;
+      call.guard = Guard::structs;
+      call.appended_bytes = appended;
+      const auto difference = first_difference(expected, compute(subject, instance, inputs, call));
+      if (difference.empty()) continue;
       return Finding::failed("a block longer by " + std::to_string(appended) + " bytes changes " + difference);
     }
   }

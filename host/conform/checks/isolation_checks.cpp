@@ -128,8 +128,10 @@ class BareModel {
  public:
   /// Looks at the files; loads nothing.
   explicit BareModel(const Subject& subject) : subject_(subject), file_(plugin::checked_library(subject.manifest())) {
-    for (const auto& parameters : subject.parameters_of_each_choice()) {
-      setups_.emplace_back(subject.manifest(), parameters, subject.typical_setting());
+    for (const plugin::ModelSetting& setting : subject.settings()) {
+      for (const auto& parameters : subject.parameters_of_each_choice()) {
+        setups_.emplace_back(subject.manifest(), parameters, setting);
+      }
     }
     const std::vector<double> none(subject.manifest().parameters.size(), std::nan(""));
     setups_.emplace_back(subject.manifest(), none, subject.typical_setting());  // to be refused, perhaps

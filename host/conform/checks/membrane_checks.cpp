@@ -300,11 +300,11 @@ std::vector<Check> membrane_checks() {
        {"compute"},
        check_state_restored,
        kind},
-      {"three-dimensions",
+      {"clamped",
        level,
-       "passes these checks in three dimensions, too",
-       {"compute", "units"},
-       check_three_dimensions,
+       "is the same in both dimensions where it keeps its width",
+       {"gradient", "units"},
+       check_clamped,
        kind},
   };
 }

@@ -176,29 +176,16 @@ void compare_clamped(Worst& worst, const Subject& outline, const Subject& surfac
 
 }  // namespace
 
-Finding check_three_dimensions(const Subject& subject) {
-  const plugin::Manifest& manifest = subject.manifest();
-  if (!manifest.works_in(3)) return Finding::skipped("works in two dimensions");
-  if (!manifest.works_in(2)) return Finding::skipped("works in three dimensions only, where all checks have been run");
-  const Subject surface = subject.in(3);
-  std::string warnings;
-  for (const char* name : {"compute", "hidden-state", "blocks", "contained", "bounds", "declared-inputs",
-                           "needs-matter", "outputs-optional", "gradient", "derivatives", "rest-state", "rigid-motion",
-                           "moduli", "closed-loop", "degenerate", "reference"}) {
-    const Finding finding = run(*find_check(name, plugin::ModelKind::membrane), surface);
-    const std::string words = std::string(name) + ": " + finding.what;
-    if (finding.verdict != Verdict::pass && finding.verdict != Verdict::warn && finding.verdict != Verdict::skip) {
-      return {finding.verdict, words, finding.measured, finding.limit};
-    }
-    if (finding.verdict == Verdict::warn) warnings += (warnings.empty() ? "" : "; ") + words;
-  }
+Finding check_clamped(const Subject& outline) {
+  const std::optional<Subject> surface = outline.in_other_dimension();
+  if (outline.dimension() == 3 || !surface)
+    return Finding::skipped("is compared where the law works in both dimensions");
+  const plugin::Manifest& law = surface->manifest();
+  if (!law.gives_output("stress_1") || !law.gives_output("stress_2")) return Finding::skipped("gives no stresses");
   Worst worst;
-  if (surface.manifest().gives_output("stress_1") && surface.manifest().gives_output("stress_2")) {
-    compare_clamped(worst, subject, surface);
-  }
-  Finding finding = worst.finding("the checks of two dimensions hold, and a clamped membrane is the same in both");
-  if (finding.verdict == Verdict::pass && !warnings.empty()) return Finding::warned(warnings);
-  return finding;
+  compare_clamped(worst, outline, *surface);
+  if (worst.count() == 0) return Finding::skipped("has no choice \"clamped\"");
+  return worst.finding("the same in both dimensions");
 }
 
 }  // namespace rouleau::conform

@@ -27,8 +27,8 @@ void keep_state(Values& inputs, const Values& outputs);
 Finding check_rigid_motion(const Subject& subject);
 Finding check_dissipation(const Subject& subject);
 Finding check_closed_loop(const Subject& subject);
-/// Of laws of both dimensions: the checks of the other one, and that a clamped membrane is the same in both.
-Finding check_three_dimensions(const Subject& subject);
+/// Of laws of both dimensions: that a clamped membrane is the same in both.
+Finding check_clamped(const Subject& outline);
 /// Of models of any kind with state.
 Finding check_state_restored(const Subject& subject);
 

@@ -31,11 +31,6 @@ Values converted(const Subject& subject, const Values& values, const plugin::Mod
   return result;
 }
 
-/// Changes by some roundings what has a unit: what another lattice makes of the same SI number.
-double jittered(double value, const units::Dimension& dimension, Random& random) {
-  return dimension == units::Dimension{} ? value : value * (1 + 4 * epsilon * uniform(random, -1, 1));
-}
-
 /// Outputs in the lattice's own units, with an interaction's cutoff among them.
 Values results(const Subject& subject, const plugin::ModelInstance& instance, const Values& inputs, double time_step) {
   Call call;
@@ -47,41 +42,15 @@ Values results(const Subject& subject, const plugin::ModelInstance& instance, co
   return outputs;
 }
 
-/// How far outputs move when parameters and inputs are rounded differently: the largest of some tries.
-Values sensitivity(const Subject& subject, const Trial& trial, const Values& inputs, const Values& outputs,
-                   double time_step, Random& random) {
-  Values most = outputs;
-  for (auto& [name, values] : most) std::fill(values.begin(), values.end(), 0.0);
-  for (int i = 0; i < 8; ++i) {
-    auto parameters = trial.parameters;
-    for (std::size_t k = 0; k < parameters.size(); ++k) {
-      parameters[k] = jittered(parameters[k], subject.manifest().parameters[k].dimension, random);
-    }
-    Values near = inputs;
-    for (auto& [name, values] : near) {
-      const units::Dimension dimension = dimension_of_array(subject, name);
-      for (double& value : values) value = jittered(value, dimension, random);
-    }
-    try {
-      const Values moved = results(subject, subject.make(parameters, trial.setting), near, time_step);
-      for (auto& [name, values] : most) {
-        for (std::size_t k = 0; k < values.size(); ++k) {
-          values[k] = std::max(values[k], std::abs(moved.at(name)[k] - outputs.at(name)[k]));
-        }
-      }
-    } catch (const plugin::ModelRefused&) {  // at the very limit of what it takes
-    }
-  }
-  return most;
-}
-
 /// The same SI numbers on another lattice give the same SI numbers.
 void compare_lattices(Worst& worst, const Subject& subject, const Trial& trial, Random& random) {
   const plugin::ModelSetting other = rescaled(trial.setting, random);
   const Values inputs = subject.random_inputs(trial.instance, 101, random);
   const double time_step = subject.manifest().state.empty() ? 1 : std::pow(10.0, uniform(random, 0, 5));
   const Values here = results(subject, trial.instance, inputs, time_step);
-  const Values tolerance = sensitivity(subject, trial, inputs, here, time_step, random);
+  const Values tolerance = sensitivity(
+      subject, trial, inputs, random, 4, true,
+      [&](const auto& instance, const Values& near) { return results(subject, instance, near, time_step); });
   const Values there = converted(
       subject,
       results(subject, subject.make(trial.parameters, other), converted(subject, inputs, trial.setting, other),

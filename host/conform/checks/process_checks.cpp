@@ -73,13 +73,15 @@ Finding leaks(const Subject& subject) {
 Finding fuzz(const Subject& subject) {
   Random random = subject.random();
   constexpr int rounds = 400;
+  const auto settings = subject.settings();
   std::size_t elements = 0;
   for (int i = 0; i < rounds; ++i) {
     std::optional<plugin::ModelInstance> instance;
+    const plugin::ModelSetting& setting = settings[random() % settings.size()];
     try {
-      instance.emplace(subject.manifest(), subject.random_parameters(random), subject.typical_setting());
+      instance.emplace(subject.manifest(), subject.random_parameters(random), setting);
     } catch (const plugin::ModelRefused&) {  // parameters that do not go together
-      instance.emplace(subject.manifest(), subject.typical_parameters(), subject.typical_setting());
+      instance.emplace(subject.manifest(), subject.typical_parameters(), setting);
     }
     const std::size_t count = 1 + random() % 97;
     const Values inputs = subject.any_inputs(count, random);

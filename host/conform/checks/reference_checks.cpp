@@ -6,9 +6,9 @@
 #include "base/text.hpp"
 #include "conform/call.hpp"
 #include "conform/check.hpp"
+#include "effects.hpp"
 #include "json/shown.hpp"
 #include "plugin/quantities.hpp"
-#include "trials.hpp"
 #include "worst.hpp"
 
 namespace rouleau::conform {
@@ -24,7 +24,7 @@ struct Reference {
   Values expected;  ///< by array
   Call call;
   double tolerance;
-  std::string source;
+  std::string source, at;
 };
 
 /// Where a manifest's check stands, for messages.
@@ -68,18 +68,18 @@ struct Entry {
 
 std::string state_array(std::size_t k) { return "state." + std::to_string(k); }
 
-Reference read(const Subject& subject, std::size_t number) {
+Reference read(const Subject& subject, const Entry& entry) {
   const plugin::Manifest& manifest = subject.manifest();
-  const Entry entry{subject, manifest.checks[number], manifest.file.string() + " /checks/" + std::to_string(number)};
   plugin::ModelSetting setting = subject.typical_setting();
   setting.inertia = entry.json.value("inertia", false);
   const auto parameters = entry.parameters();
-  Reference reference{{subject.make(parameters, setting), parameters, setting, {}}, {}, {}, {}, 0, {}};
+  Reference reference{{subject.make(parameters, setting), parameters, setting, {}}, {}, {}, {}, 0, {}, {}};
   const Json& given = entry.json["inputs"];
   for (const std::string& name : manifest.needs) {
     if (!given.contains(name)) entry.refuse(" gives no value for the input " + name);
     entry.add(reference.inputs, name, given[name], setting.units, plugin::dimension_of(manifest, name));
   }
+  if (manifest.needs.empty()) reference.inputs[subject.drawn().front()] = {1};
   const Json& outputs = entry.json["outputs"];
   for (std::size_t k = 0; k < manifest.state.size(); ++k) {
     const plugin::StateVariable& variable = manifest.state[k];
@@ -98,6 +98,30 @@ Reference read(const Subject& subject, std::size_t number) {
   return reference;
 }
 
+/// Those of this dimension: an operator's on the lattice that has as many populations.
+std::vector<Reference> references_of(const Subject& subject) {
+  const plugin::Manifest& manifest = subject.manifest();
+  const std::optional<Subject> other = subject.in_other_dimension();
+  std::vector<Reference> references;
+  for (std::size_t i = 0; i < manifest.checks.size(); ++i) {
+    const Json& entry = manifest.checks[i];
+    const Json populations = entry["inputs"].value("populations", Json());
+    if (other && populations.is_array() && populations.size() == arrays_of(*other, "populations").size()) continue;
+    const bool of_surface = other && subject.dimension() == 3 && manifest.kind == plugin::ModelKind::membrane;
+    const std::string at = (of_surface ? "/in_3d/checks/" : "/checks/") + std::to_string(i);
+    references.push_back(read(subject, {subject, entry, manifest.file.string() + ' ' + at}));
+    references.back().at = at;
+  }
+  return references;
+}
+
+std::string no_references(const Subject& subject) {
+  const bool of_lattice = subject.manifest().kind == plugin::ModelKind::collision;
+  return "its manifest has no reference numbers (\"checks\") from the model's source" +
+         (of_lattice ? " with " + std::to_string(arrays_of(subject, "populations").size()) + " populations"
+                     : std::string());
+}
+
 /// The reference's element, and further ones with each of its inputs a tenth smaller and larger.
 Values with_neighbours(const Values& inputs) {
   Values all;
@@ -113,13 +137,13 @@ Values with_neighbours(const Values& inputs) {
 
 Finding compare_references(const Subject& subject) {
   const plugin::Manifest& manifest = subject.manifest();
-  if (manifest.checks.empty()) {
-    if (manifest.kind == plugin::ModelKind::collision) return Finding::skipped("its manifest has no reference numbers");
-    return Finding::warned("its manifest has no reference numbers (\"checks\") from the model's source");
+  const auto references = references_of(subject);
+  if (references.empty()) {
+    const bool is_pinned_elsewhere = manifest.kind == plugin::ModelKind::collision;
+    return (is_pinned_elsewhere ? Finding::skipped : Finding::warned)(no_references(subject));
   }
   Worst worst;
-  for (std::size_t i = 0; i < manifest.checks.size(); ++i) {
-    const Reference reference = read(subject, i);
+  for (const Reference& reference : references) {
     const Values inputs = with_neighbours(reference.inputs);
     const Values outputs = compute(subject, reference.trial.instance, inputs, reference.call);
     for (const auto& [name, wanted] : reference.expected) {
@@ -135,9 +159,9 @@ Finding compare_references(const Subject& subject) {
       worst.add(std::abs(found[0] - expected) * scale, reference.tolerance * size * scale, [&, &name = name] {
         const double unit = reference.trial.setting.units.unit(dimension_of_array(subject, name));
         return name + " is " + number(found[0] * unit, 17) + " SI at " +
-               place(subject, reference.trial.setting, inputs, 0) + ", the manifest's check " + std::to_string(i) +
-               " says " + number(expected * unit, 17) +
-               (reference.source.empty() ? "" : " (" + reference.source + ')') + "; the difference is";
+               place(subject, reference.trial.setting, inputs, 0) + ", the manifest's " + reference.at + " says " +
+               number(expected * unit, 17) + (reference.source.empty() ? "" : " (" + reference.source + ')') +
+               "; the difference is";
       });
     }
   }
@@ -177,28 +201,38 @@ bool parameter_is_pinned(const Subject& subject, const Reference& reference, std
   return false;
 }
 
+/// Whether a derivative, which the check of derivatives has looked at, is 0 whatever goes in: there is no other number.
+bool is_always_zero(const Subject& subject, const std::string& output) {
+  if (output.find("_by_") == std::string::npos) return false;
+  Random random = subject.random();
+  const auto all = trials(subject, random, subject.typical_setting());
+  return std::all_of(all.begin(), all.end(), [&](const Trial& trial) {
+    const auto values = compute(subject, trial.instance, subject.random_inputs(trial.instance, 64, random)).at(output);
+    return std::all_of(values.begin(), values.end(), [](double value) { return value == 0; });
+  });
+}
+
 /// What the model is must follow from its manifest: a factor, a sign or a unit that is wrong in all formulas alike is
 /// seen against numbers from elsewhere only.
 Finding pinned(const Subject& subject) {
   const plugin::Manifest& manifest = subject.manifest();
-  if (manifest.checks.empty()) {
-    return Finding::failed("its manifest has no reference numbers (\"checks\") from the model's source");
-  }
-  std::vector<Reference> references;
-  for (std::size_t i = 0; i < manifest.checks.size(); ++i) references.push_back(read(subject, i));
+  const auto references = references_of(subject);
+  if (references.empty()) return Finding::failed(no_references(subject));
   const auto any = [&](const auto& test) { return std::any_of(references.begin(), references.end(), test); };
   std::vector<std::string> loose;
   for (std::size_t k = 0; k < manifest.parameters.size(); ++k) {
     const plugin::Parameter& parameter = manifest.parameters[k];
-    // What `roles` measures needs no number; how stiff an area modulus makes a stretch is not known to it.
-    const bool measured = parameter.role && *parameter.role != plugin::Role::area_modulus &&
-                          *parameter.role != plugin::Role::shear_modulus;
+    const bool measured = parameter.role && is_measured(manifest, *parameter.role);
     for (std::size_t word = 0; word < parameter.choices.size(); ++word) {
       const auto has = [&](const Reference& r) { return r.trial.parameters[k] == static_cast<double>(word); };
       if (!any(has)) loose.push_back(parameter.name + " = " + parameter.choices[word]);
     }
     if (measured || !parameter.choices.empty()) continue;
     if (!any([&](const Reference& r) { return parameter_is_pinned(subject, r, k); })) loose.push_back(parameter.name);
+  }
+  if (!loose.empty()) {  // what has an effect in the other dimension alone is for its numbers
+    const auto idle = idle_parameters_here(subject);
+    std::erase_if(loose, [&](const auto& name) { return std::find(idle.begin(), idle.end(), name) != idle.end(); });
   }
   const auto see = [&](const std::string& array, const std::string& name) {
     const bool matters = any([&](const Reference& r) {
@@ -213,7 +247,7 @@ Finding pinned(const Subject& subject) {
       const auto found = r.expected.find(array);
       return found != r.expected.end() && found->second[0] != 0;
     });
-    if (!given) loose.push_back(name);
+    if (!given && !is_always_zero(subject, array)) loose.push_back(name);
   };
   for (const std::string& name : manifest.needs) {
     for (const std::string& array : arrays_of(subject, name)) see(array, name);

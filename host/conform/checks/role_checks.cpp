@@ -6,6 +6,7 @@
 #include "conform/call.hpp"
 #include "conform/check.hpp"
 #include "differences.hpp"
+#include "effects.hpp"
 #include "membrane_work.hpp"
 #include "trials.hpp"
 
@@ -42,6 +43,19 @@ double stiffness(const Subject& subject, const Trial& trial, const Response& res
 constexpr Response to_stretch{"tension", "stretch", "tension_by_stretch"};
 constexpr Response to_rate{"tension", "stretch_rate", "tension_by_rate"};
 constexpr Response to_curvature{"moment", "curvature", "moment_by_curvature"};
+
+bool gives_stress(const plugin::Manifest& manifest) {
+  return manifest.gives_output("stress_1") || manifest.gives_output("stress_2");
+}
+
+/// Of a triangle at rest, in SI. With the stretches 1 + e and 1/(1 + e), I1 = 4 e^2 and I2 = 0: the energy is half the
+/// modulus times (2 e)^2.
+double resistance_to_shear(const Subject& subject, const Trial& trial) {
+  Random random = subject.random();
+  const Values now = compute(subject, trial.instance, at_rest(subject, trial, 1, random), look());
+  const double stress = now.contains("stress_1") ? now.at("stress_1")[0] : 0;
+  return trial.setting.units.to_si(2 * stress, plugin::facts_of(plugin::Role::shear_modulus).dimension);
+}
 
 /// An output at distances, lattice units.
 std::vector<double> along(const Subject& subject, const Trial& trial, const char* output,
@@ -92,11 +106,14 @@ double found(const Subject& subject, const Trial& trial, std::size_t parameter, 
       return force[0] >= 0 && force[1] <= 0 ? said : 0;
     }
     case plugin::Role::shear_modulus: {
-      // In a plane nothing shears a membrane, but what resists shear resists stretch, the more the more of it there is.
+      if (said == 0) return std::nan("");
       auto parameters = trial.parameters;
       parameters[parameter] *= 2;
-      if (said == 0) return std::nan("");
       const Trial doubled{subject.make(parameters, trial.setting), parameters, trial.setting, trial.words};
+      if (gives_stress(subject.manifest())) {  // what else resists shear stays
+        return resistance_to_shear(subject, doubled) - resistance_to_shear(subject, trial);
+      }
+      // In a plane nothing shears a membrane, but what resists shear resists stretch, the more the more of it there is.
       const double more = stiffness(subject, doubled, to_stretch, role);
       return more > (1 + tolerance) * stiffness(subject, trial, to_stretch, role) ? said : 0;
     }
@@ -106,8 +123,9 @@ double found(const Subject& subject, const Trial& trial, std::size_t parameter, 
   return std::nan("");
 }
 
-/// The answer that a role is about and the law does not have; empty when it has.
+/// The answer that a role is about and the law does not have in this dimension; empty when it has.
 std::string without(const plugin::Manifest& manifest, plugin::Role role) {
+  if (role == plugin::Role::shear_modulus && gives_stress(manifest)) return {};
   const auto lacks = [&](const Response& response) {
     const bool has = manifest.gives_output(response.force) && manifest.needs_input(response.variable);
     return has ? std::string() : std::string(response.force) + " that depends on " + response.variable;
@@ -127,6 +145,7 @@ std::string without(const plugin::Manifest& manifest, plugin::Role role) {
 
 Finding roles(const Subject& subject) {
   const auto& parameters = subject.manifest().parameters;
+  const std::optional<Subject> other = subject.in_other_dimension();
   Random random = subject.random();
   const auto all = trials(subject, random, subject.typical_setting());
   Worst worst;
@@ -135,6 +154,7 @@ Finding roles(const Subject& subject) {
     const plugin::RoleFacts& role = plugin::facts_of(*parameters[k].role);
     const std::string words = parameters[k].name + " has the role " + role.name;
     if (const auto lacking = without(subject.manifest(), role.role); !lacking.empty()) {
+      if (other && without(other->manifest(), role.role).empty()) continue;
       return Finding::failed(words + ", but the law gives no " + lacking);
     }
     for (const Trial& trial : all) {
@@ -147,7 +167,7 @@ Finding roles(const Subject& subject) {
       const double said = trial.parameters[k];
       worst.add(std::abs(measured - said), tolerance * std::abs(said), [&] {
         const bool is_place = role.role == plugin::Role::zero_force_distance;
-        const bool is_shear = role.role == plugin::Role::shear_modulus;
+        const bool is_shear = role.role == plugin::Role::shear_modulus && !gives_stress(subject.manifest());
         const std::string value = number(said, 7) + ' ' + role.unit;
         return words + ", " + value + ", but " +
                (is_place   ? "the force does not turn from repulsion to attraction there"
@@ -162,6 +182,11 @@ Finding roles(const Subject& subject) {
 }
 
 }  // namespace
+
+bool is_measured(const plugin::Manifest& manifest, plugin::Role role) {
+  // How stiff they make a stretch is the law's affair.
+  return role != plugin::Role::area_modulus && role != plugin::Role::shear_modulus && without(manifest, role).empty();
+}
 
 std::vector<Check> role_checks() {
   return {{"roles",

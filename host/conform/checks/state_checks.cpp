@@ -62,20 +62,9 @@ Finding look_after_step(const Subject& subject) {
       keep_state(there, after);
       const Values seen = compute(subject, trial.instance, there, look);
       // How much the rounding of the state and of what is measured matters depends on the formula.
-      Values most = seen;
-      for (auto& [name, values] : most) values.assign(values.size(), 0);
-      for (int i = 0; i < 8; ++i) {
-        Values near = there;
-        for (auto& [name, values] : near) {
-          for (double& value : values) value *= 1 + 8 * epsilon * uniform(random, -1, 1);
-        }
-        const Values moved = compute(subject, trial.instance, near, look);
-        for (auto& [name, values] : most) {
-          for (std::size_t k = 0; k < state_elements; ++k) {
-            values[k] = std::max(values[k], std::abs(moved.at(name)[k] - seen.at(name)[k]));
-          }
-        }
-      }
+      const Values most =
+          sensitivity(subject, trial, there, random, 8, false,
+                      [&](const auto& instance, const Values& near) { return compute(subject, instance, near, look); });
       for (const auto& [name, values] : seen) {
         if (is_state(name) || is_derivative(name)) continue;
         for (std::size_t i = 0; i < state_elements; ++i) {
@@ -128,32 +117,42 @@ Finding half_steps(const Subject& subject) {
       for (std::size_t k = 0; k < subject.manifest().state.size() && random() % 2 == 0; ++k) {
         inputs["state." + std::to_string(k)].assign(state_elements, trial.instance.initial_state()[k]);
       }
-      // From the longest step to the shortest that still changes something: what a long one may do is not asked.
+      // From the longest step to the shortest that still changes something: what a long one may do is not asked, and around
+      // the time of something quick, which may be the 2^-200th of a step, steps differ; not so the ones below.
+      constexpr int enough = 9;
       struct Told {
-        double change, difference, noise;
-        double longer;  ///< the difference with a step four times as long
+        double size = 0, before = 0, change = 0, difference = 0, limit = 0;
+        int bad = 0;  ///< how many steps have been, each four times as long as the next
       };
-      std::vector<double> size, before;
-      std::vector<std::optional<Told>> shortest;
-      for (int exponent = 30; exponent >= -60; exponent -= 2) {
+      const auto& states = subject.manifest().state;
+      std::vector<Told> told(states.size() * state_elements);
+      bool changes = true;
+      for (int exponent = 30; exponent > 0 || (changes && exponent >= -400); exponent -= 2) {
         const auto all = halvings(subject, trial, inputs, std::ldexp(1.0, exponent));
-        size.resize(all.size());
-        before.resize(all.size());
-        shortest.resize(all.size());
+        changes = false;
         for (std::size_t k = 0; k < all.size(); ++k) {
-          const double longer = std::exchange(before[k], all[k].difference);
+          Told& here = told[k];
+          const double longer = std::exchange(here.before, all[k].difference);
           if (!std::isfinite(all[k].size)) continue;
-          if (exponent <= 0 || all[k].difference < 0.1 * all[k].change) size[k] = std::max(size[k], all[k].size);
-          const double noise = 256 * epsilon * std::max(size[k], all[k].start);
-          if (all[k].change > 1e5 * noise) shortest[k] = {all[k].change, all[k].difference, noise, longer};
+          if (exponent <= 0 || all[k].difference < 0.1 * all[k].change) here.size = std::max(here.size, all[k].size);
+          const double noise = 256 * epsilon * std::max(here.size, all[k].start);
+          if (all[k].change <= 1e5 * noise) continue;
+          changes = true;
+          here.change = all[k].change;
+          here.difference = all[k].difference;
+          double largest = 0;  // it may be what is left of sums with the element's others
+          for (std::size_t j = k % state_elements; j < all.size(); j += state_elements) {
+            const bool alike = states[j / state_elements].dimension == states[k / state_elements].dimension;
+            if (alike) largest = std::max({largest, told[j].size, all[j].start});
+          }
+          here.limit = std::max(1e-2 * here.change + 256 * epsilon * largest, longer / 8);
+          here.bad = here.difference > here.limit ? here.bad + 1 : 0;
         }
       }
-      for (std::size_t k = 0; k < shortest.size(); ++k) {
-        if (!shortest[k]) continue;
-        const double limit = std::max(1e-2 * shortest[k]->change + shortest[k]->noise, shortest[k]->longer / 8);
-        worst.add(shortest[k]->difference, limit, [&] {
-          return "a short step changes state." + std::to_string(k / state_elements) + " by " +
-                 number(shortest[k]->change, 6) + " in its own units, at " +
+      for (std::size_t k = 0; k < told.size(); ++k) {
+        worst.add(told[k].bad < enough ? 0 : told[k].difference, told[k].limit, [&] {
+          return "short steps change state." + std::to_string(k / state_elements) + ", such as by " +
+                 number(told[k].change, 6) + " in its own units, at " +
                  place(subject, trial.setting, inputs, k % state_elements) + trial.words +
                  "; two of half its length differ from it by";
         });

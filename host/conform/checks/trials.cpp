@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "base/text.hpp"
 #include "plugin/quantities.hpp"
@@ -50,6 +52,17 @@ std::vector<Trial> trials(const Subject& subject, Random& random, const plugin::
   return all;
 }
 
+std::vector<Trial> setting_trials(const Subject& subject, Random& random, int draws) {
+  std::vector<Trial> all;
+  for (const plugin::ModelSetting& setting : subject.settings()) {
+    for (Trial& trial : trials(subject, random, setting, draws)) {
+      if (setting.inertia) trial.words = " (inertia on)" + trial.words;
+      all.push_back(std::move(trial));
+    }
+  }
+  return all;
+}
+
 std::vector<Trial> collision_trials(const Subject& subject, Random& random, int draws) {
   std::vector<Trial> all;
   const std::array<double, 3> rates = {uniform(random, 0.1, 1.95), 1, random() % 2 == 0 ? 1.999999 : 0.01};
@@ -64,6 +77,39 @@ std::vector<Trial> collision_trials(const Subject& subject, Random& random, int 
     }
   }
   return all;
+}
+
+Values sensitivity(const Subject& subject, const Trial& trial, const Values& inputs, Random& random, double roundings,
+                   bool only_units, const Results& results) {
+  const Values before = results(trial.instance, inputs);
+  const auto jitter = [&](double& value, const units::Dimension& dimension) {
+    if (only_units && dimension == units::Dimension{}) return;
+    value *= 1 + roundings * std::numeric_limits<double>::epsilon() * uniform(random, -1, 1);
+  };
+  Values most = before;
+  for (auto& [name, values] : most) std::fill(values.begin(), values.end(), 0.0);
+  for (int i = 0; i < 8; ++i) {
+    auto parameters = trial.parameters;
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      const plugin::Parameter& parameter = subject.manifest().parameters[k];
+      if (parameter.choices.empty()) jitter(parameters[k], parameter.dimension);
+    }
+    Values near = inputs;
+    for (auto& [name, values] : near) {
+      const units::Dimension dimension = dimension_of_array(subject, name);
+      for (double& value : values) jitter(value, dimension);
+    }
+    try {
+      const Values moved = results(subject.make(parameters, trial.setting), near);
+      for (auto& [name, values] : most) {
+        for (std::size_t k = 0; k < values.size(); ++k) {
+          values[k] = std::max(values[k], std::abs(moved.at(name)[k] - before.at(name)[k]));
+        }
+      }
+    } catch (const plugin::ModelRefused&) {  // at the very limit of what it takes
+    }
+  }
+  return most;
 }
 
 units::Dimension dimension_of_array(const Subject& subject, const std::string& array) {

@@ -1,6 +1,7 @@
 // The instances that a check of physics tries: typical parameters, each word of each choice, random parameters.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,16 +25,15 @@ std::vector<Trial> trials(const Subject& subject, Random& random, const plugin::
 /// its limits, or 1, where much cancels.
 std::vector<Trial> collision_trials(const Subject& subject, Random& random, int draws = 4);
 
-/// What a check finds of a model on each lattice that its manifest names: the worst of it.
-template <Finding (*run)(const Subject&)>
-Finding on_each_lattice(const Subject& subject) {
-  Finding found = run(subject);
-  if (subject.manifest().kind != plugin::ModelKind::collision) return found;
-  if (subject.dimension() == 3 || !subject.manifest().works_in(3)) return found;
-  Finding in_space = run(subject.on_lattice(3));
-  in_space.what += " (D3Q19)";
-  return worse(in_space, found) ? in_space : found;
-}
+/// Trials of each of the subject's settings.
+std::vector<Trial> setting_trials(const Subject& subject, Random& random, int draws);
+
+/// Outputs of an instance for inputs, by name.
+using Results = std::function<Values(const plugin::ModelInstance&, const Values&)>;
+/// How far results move when parameters and inputs are rounded differently, by up to `roundings` epsilon: the largest of
+/// eight tries. `only_units`: what has no unit stays.
+Values sensitivity(const Subject& subject, const Trial& trial, const Values& inputs, Random& random, double roundings,
+                   bool only_units, const Results& results);
 
 /// A number of a trial's lattice in SI with its unit, "1.2e-05 N/m"; `name` is of "needs" or "gives".
 std::string in_si(const Subject& subject, const plugin::ModelSetting& setting, const std::string& name, double lattice,

@@ -109,6 +109,14 @@ struct Dual {
     const S inverse = 1.0 / a.value;
     return chain(a, log(a.value), inverse, -(inverse * inverse));
   }
+  ROULEAU_ALWAYS_INLINE friend Dual expm1(const Dual& a) {
+    const S f = exp(a.value);
+    return chain(a, expm1(a.value), f, f);
+  }
+  ROULEAU_ALWAYS_INLINE friend Dual log1p(const Dual& a) {
+    const S inverse = 1.0 / (1.0 + a.value);
+    return chain(a, log1p(a.value), inverse, -(inverse * inverse));
+  }
   ROULEAU_ALWAYS_INLINE friend Dual sin(const Dual& a) {
     const S f = sin(a.value);
     return chain(a, f, cos(a.value), -f);

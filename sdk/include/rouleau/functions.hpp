@@ -1,4 +1,4 @@
-// log, pow, sin, cos, tanh and erf of packs, beside exp and sqrt in pack.hpp.
+// log, log1p, expm1, pow, sin, cos, tanh and erf of packs, beside exp and sqrt in pack.hpp.
 //
 // Every function gives the same bits for each instruction set and at each place of a pack: products are kept apart from
 // the sums they go into, so that no compiler makes one fused operation of both. (exp and an author's own formula have
@@ -8,6 +8,8 @@
 //
 //             method                                                        ulp     range
 //   log       fdlibm, e_log.c: polynomial of degree 7 in (f / (2 + f))^2    1       all
+//   log1p     log of 1 + x, and what rounding has left out of that            2       all
+//   expm1     exp without its 1                                              2       all
 //   pow       log in two numbers, then exp; the split is that of e_pow.c    1       all
 //   sin, cos  fdlibm, k_sin.c, k_cos.c; pi/2 in three parts, e_rem_pio2.c   1       |x| <= 1e6, NaN beyond
 //   tanh      Cephes, tanh.c: rational below 0.625, then exp                2       all
@@ -122,9 +124,13 @@ ROULEAU_ALWAYS_INLINE Parts<S> parts_of(const S& x) {
   return {exponent + select(large, S(1.0), S(0.0)), select(large, times(mantissa, S(0.5)), mantissa)};
 }
 
-/// e^(x.high + x.low) for |x.high| < 760, subnormal results too: 0.6 ulp.
+/// e^(x.high + x.low) = 2^n (1 + rest) with |rest| < 0.42, for |x.high| < 760.
 template <class S>
-ROULEAU_ALWAYS_INLINE S exp_of(const Sum<S>& x) {
+struct Scaled {
+  S n, rest;
+};
+template <class S>
+ROULEAU_ALWAYS_INLINE Scaled<S> scaled_exp(const Sum<S>& x) {
   constexpr double inverse_factorials[] = {1.0 / 2,       1.0 / 6,        1.0 / 24,        1.0 / 120,
                                            1.0 / 720,     1.0 / 5040,     1.0 / 40320,     1.0 / 362880,
                                            1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800};
@@ -133,7 +139,14 @@ ROULEAU_ALWAYS_INLINE S exp_of(const Sum<S>& x) {
   const S rest = t - w;
   const Sum<S> reduced = exact_sum(rest, ((t - rest) - w) + x.low);
   const S r = reduced.high, low = reduced.low;
-  const S p = 1.0 + (r + (low + times(times(r, r), polynomial(r, inverse_factorials))));
+  return {n, r + (low + times(times(r, r), polynomial(r, inverse_factorials)))};
+}
+
+/// e^(x.high + x.low) for |x.high| < 760, subnormal results too: 0.6 ulp.
+template <class S>
+ROULEAU_ALWAYS_INLINE S exp_of(const Sum<S>& x) {
+  const Scaled<S> scaled = scaled_exp(x);
+  const S n = scaled.n, p = 1.0 + scaled.rest;
   // In two steps where one power of two would not do: the last product is the only one that may round.
   const auto large = n > S(1000.0), small = n < S(-1000.0);
   const S aside = select(large, S(100.0), select(small, S(-100.0), S(0.0)));
@@ -160,6 +173,21 @@ ROULEAU_ALWAYS_INLINE S log_of(const S& x) {
   const S result = times(k, S(6.93147180369123816490e-01)) - ((half - correction) - f);
   const S infinity = __builtin_huge_val(), nan = __builtin_nan("");
   return select(x > S(0.0), select(x < infinity, result, x), select(x < S(0.0), nan, select(x <= x, -infinity, x)));
+}
+
+template <class S>
+ROULEAU_ALWAYS_INLINE S expm1_of(const S& x) {
+  const Scaled<S> scaled = scaled_exp(Sum<S>{min(max(x, S(-40.0)), S(40.0)), S(0.0)});
+  const S scale = power_of_two(scaled.n), near_zero = times(scale, scaled.rest) + (scale - 1.0);
+  const S result = select(x > S(40.0), exp_of(min(x, S(750.0))), near_zero);
+  return select(with_sign(x, S(0.0)) < S(1e-17), x, select(x <= x, result, x));  // keeps -0 and subnormal numbers
+}
+
+template <class S>
+ROULEAU_ALWAYS_INLINE S log1p_of(const S& x) {
+  const S u = 1.0 + x, left_out = select(x > S(1.0), 1.0 - (u - x), x - (u - 1.0)), log_u = log_of(u);
+  const S result = select((u > S(0.0)) & (x < S(__builtin_huge_val())), log_u + left_out / u, log_u);
+  return select(with_sign(x, S(0.0)) < S(1e-17), x, result);
 }
 
 /// log of positive finite numbers to 2^-66 of itself.
@@ -342,6 +370,18 @@ ROULEAU_ALWAYS_INLINE Pack<T, N> log(const Pack<T, N>& x) {
   return detail::in_double(
       [](const auto& a) __attribute__((always_inline)) { return detail::log_of(a); }, x);
 }
+/// Logarithm of 1 + x: exact where x is small, and log would see nothing but 1.
+template <class T, int N>
+ROULEAU_ALWAYS_INLINE Pack<T, N> log1p(const Pack<T, N>& x) {
+  return detail::in_double(
+      [](const auto& a) __attribute__((always_inline)) { return detail::log1p_of(a); }, x);
+}
+/// exp(x) - 1: exact where x is small, and both would cancel.
+template <class T, int N>
+ROULEAU_ALWAYS_INLINE Pack<T, N> expm1(const Pack<T, N>& x) {
+  return detail::in_double(
+      [](const auto& a) __attribute__((always_inline)) { return detail::expm1_of(a); }, x);
+}
 /// Sine of |x| <= 1e6; NaN beyond, where a law that turns so often has gone wrong.
 template <class T, int N>
 ROULEAU_ALWAYS_INLINE Pack<T, N> sin(const Pack<T, N>& x) {
@@ -384,7 +424,9 @@ ROULEAU_ALWAYS_INLINE Pack<T, N> pow(double x, const Pack<T, N>& y) {
 /// The same names for plain numbers, so that one formula serves both.
 using std::cos;
 using std::erf;
+using std::expm1;
 using std::log;
+using std::log1p;
 using std::pow;
 using std::sin;
 using std::tanh;

@@ -39,3 +39,15 @@ TEST_CASE("a number passes up to its limit, and what is no number fails") {
   CHECK(Finding::at_most(1.1, 1, "x").verdict == Verdict::fail);
   CHECK(Finding::at_most(std::nan(""), 1, "x").verdict == Verdict::fail);
 }
+
+TEST_CASE("of two dimensions the worse finding is kept: what fails before what crashes, warns, passes and is skipped") {
+  const std::vector<Verdict> falling = {Verdict::fail, Verdict::crash, Verdict::timeout,
+                                        Verdict::warn, Verdict::pass,  Verdict::skip};
+  for (std::size_t i = 0; i < falling.size(); ++i) {
+    for (std::size_t k = 0; k < falling.size(); ++k) {
+      CHECK(worse({falling[i], "", {}, {}}, {falling[k], "", {}, {}}) == (i < k));
+    }
+  }
+  CHECK(worse(Finding::at_most(2, 10, ""), Finding::at_most(1, 10, "")));
+  CHECK_FALSE(worse(Finding::at_most(1, 10, ""), Finding::at_most(2, 10, "")));
+}

@@ -284,6 +284,15 @@ TEST_CASE("a membrane law says in which dimensions it works, and what its elemen
   law["gives"] = {"pressure", "energy"};
   CHECK(unit_of(read(), "energy") == "J");
 
+  law["state"] = Json::parse(R"([{"name": "dashpot", "unit": "1"}])");
+  CHECK(refusal(law).place().pointer == "/state/0");
+  CHECK_THAT(refusal(law).what(), Contains("cannot remember \"dashpot\" yet"));
+  law.erase("state");
+  law["needs"] = {"invariant_2", "invariant_2_rate"};
+  law["gives"] = {"stress_2", "energy"};
+  CHECK(refusal(law).place().pointer == "/needs/1");
+  CHECK_THAT(refusal(law).what(), Contains("do not have it yet"));
+
   Json pair = good_manifest();
   pair.erase("dimensions");
   const auto works_in_space = [&] { return read_manifest(folder.write("pair.json", pair), Units()).works_in(3); };

@@ -100,6 +100,10 @@ TEST_CASE("every function and operation of a dual number has the derivatives of 
   check_function(
       "log", [](const Number& x) { return x * log(x); }, positive);
   check_function(
+      "expm1", [](const Number& x) { return x * expm1(-0.5 * x); }, any);
+  check_function(
+      "log1p", [](const Number& x) { return x * log1p(x); }, positive);
+  check_function(
       "sin, cos", [](const Number& x) { return sin(1.5 * x) + x * cos(x * x * 0.3); }, any);
   check_function(
       "tanh", [](const Number& x) { return x * tanh(x); }, any);
@@ -211,7 +215,7 @@ double nanoseconds(std::size_t count, const F& f) {
   return least;
 }
 
-enum class Function { exp, log, pow, sin, cos, tanh, erf };
+enum class Function { exp, log, log1p, expm1, pow, sin, cos, tanh, erf };
 template <class T, Function function>
 struct CostLoop {
   template <int register_bytes>
@@ -221,6 +225,8 @@ struct CostLoop {
       const S x = S::load(from + i);
       if constexpr (function == Function::exp && sizeof(T) == 8) exp(x).store(to + i);
       if constexpr (function == Function::log) log(x).store(to + i);
+      if constexpr (function == Function::log1p) log1p(x).store(to + i);
+      if constexpr (function == Function::expm1) expm1(x).store(to + i);
       if constexpr (function == Function::pow) pow(x, 2.7).store(to + i);
       if constexpr (function == Function::sin) sin(x).store(to + i);
       if constexpr (function == Function::cos) cos(x).store(to + i);

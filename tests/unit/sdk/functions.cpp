@@ -1,4 +1,4 @@
-// log, pow, sin, cos, tanh and erf of packs: accurate, the same bits for each instruction set, right at their edges.
+// log, log1p, expm1, pow, sin, cos, tanh and erf of packs: accurate, the same bits for each instruction set, right at their edges.
 #include <rouleau/functions.hpp>
 
 #include <algorithm>
@@ -17,11 +17,13 @@ namespace {
 
 using rouleau::Pack;
 
-enum class Function { log, pow, sin, cos, tanh, erf };
+enum class Function { log, log1p, expm1, pow, sin, cos, tanh, erf };
 
 template <class S, Function function>
 ROULEAU_ALWAYS_INLINE S value_of(const S& x, const S& y) {
   if constexpr (function == Function::log) return log(x);
+  if constexpr (function == Function::log1p) return log1p(x);
+  if constexpr (function == Function::expm1) return expm1(x);
   if constexpr (function == Function::pow) return pow(x, y);
   if constexpr (function == Function::sin) return sin(x);
   if constexpr (function == Function::cos) return cos(x);
@@ -65,6 +67,10 @@ long double exact(Function function, long double x, long double y) {
   switch (function) {
     case Function::log:
       return std::log(x);
+    case Function::log1p:
+      return std::log1p(x);
+    case Function::expm1:
+      return std::expm1(x);
     case Function::pow:
       return std::pow(x, y);
     case Function::sin:
@@ -156,6 +162,9 @@ void check_all(bool in_float) {
   for (const double width : {0.5, 1e-2, 1e-5, 1e-9}) add_range(logarithm, random, 1 - width, 1 + width, many);
   check<T, Function::log>("log", logarithm, limit(1));
 
+  add_range(logarithm, random, -0.999, 0.999, many);
+  check<T, Function::log1p>("log1p", logarithm, limit(2));
+
   Arguments<T> power;
   std::uniform_real_distribution<double> result(-745, 709), base(-1, 1), small(-6, 6);
   for (int i = 0; i < 4 * many; ++i) {  // the result is anywhere in the range, also where the base is near 1
@@ -180,13 +189,15 @@ void check_all(bool in_float) {
   add_wide(number, random, low, high, many);
   add_wide(number, random, -3, 1, many);
   for (const double width : {0.7, 1.3, 3.0, 7.0, 25.0}) add_range(number, random, -width, width, many);
+  check<T, Function::expm1>("expm1", number, limit(2));
   check<T, Function::tanh>("tanh", number, limit(2));
   check<T, Function::erf>("erf", number, limit(1));
 }
 
 }  // namespace
 
-TEST_CASE("log, pow, sin, cos, tanh and erf are accurate and have the same bits for each instruction set") {
+TEST_CASE(
+    "log, log1p, expm1, pow, sin, cos, tanh and erf are accurate and have the same bits for each instruction set") {
   check_all<double>(false);
   check_all<float>(true);
 }
@@ -246,6 +257,10 @@ TEST_CASE("functions of packs do at the edges what those of plain numbers do, an
   for (const auto& set : rouleau::test::instruction_sets()) {
     agree(
         values<double, Function::log>(alone, set), alone, [](double x, double) { return std::log(x); }, set);
+    agree(
+        values<double, Function::log1p>(alone, set), alone, [](double x, double) { return std::log1p(x); }, set);
+    agree(
+        values<double, Function::expm1>(alone, set), alone, [](double x, double) { return std::expm1(x); }, set);
     agree(
         values<double, Function::tanh>(alone, set), alone, [](double x, double) { return std::tanh(x); }, set);
     agree(
