@@ -14,8 +14,8 @@ namespace rouleau::monitor {
 
 namespace {
 
-/// With all the rest, pairs of viscosity ratio 5 completed at 8.3 times the shear modulus and 0.05 of the compression that
-/// `plan` limits to 0.1, and not at 10 times (docs/stability.md).
+/// With all the rest, pairs of viscosity ratio 5 completed at 8.3 times the shear modulus and 0.05 of the compression
+/// that `plan` limits to 0.1, and not at 10 times (docs/stability.md).
 constexpr double calm_compression = plan::largest_compression_by_attraction / 2, deepest_over_shear_modulus = 8.4;
 
 plugin::ModelInstance instance(const plan::Plan& plan, std::size_t interaction, const plan::StageSetting& stage) {
@@ -95,7 +95,7 @@ std::string attraction_remedy(const plan::Plan& plan, const plan::StageSetting& 
   if (!attracts) return "";
   if (!scene.numerics.slip_correction || !scene.numerics.area_correction)
     ways.emplace_back("set numerics.slip_correction and numerics.area_correction to true");
-  // In three dimensions the slip correction leaks with other kernels: pairs at rest 2 % and more, with this one 0.2 to 0.8 %.
+  // In three dimensions the slip correction leaks with other kernels: pairs at rest 2 %, with this one 0.2 to 0.8 %.
   if (scene.domain.depth && scene.numerics.kernel != "sharp6") ways.emplace_back("set numerics.kernel to \"sharp6\"");
   const double deepest = deepest_over_shear_modulus * plan::shear_modulus(plan);
   if (depth > deepest) {

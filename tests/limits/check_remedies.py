@@ -32,7 +32,8 @@ WAYS = [  # what a remedy may say, and the change of the scene that it means
     (r"lower ([\w./]+)(?: and ([\w./]+))? to (\S+?)(?=,|$| and)",
      lambda s, a, b, value: [put(s, key, float(value)) for key in (a, b) if key]),
     (r"lower ((?:numerics\.|/stages/\d/)density_factor)(?! to| and)", lambda s, key: put(s, key, get(s, key) / 2)),
-    (r"take the (\w+) kernel and about one segment for each spacing", lambda s, kernel: put(s, "numerics.kernel", kernel)),
+    (r"take the (\w+) kernel and about one segment for each spacing",
+     lambda s, kernel: put(s, "numerics.kernel", kernel)),
     (r"take more (segments|triangles)", lambda s, what: [kind.pop(what) for kind in s["cell_types"].values()]),
 ]
 
@@ -133,7 +134,8 @@ class Case(unittest.TestCase):
         self.assertNotEqual(changed, scene)
         # Half as far again as the failure, and 500 steps.
         shorter = factor(scene) / factor(changed) if failure["step"] else 1
-        summary = self.run_scene(changed, None if ALL and failure["step"] else int(1.5 * failure["step"] * shorter) + 500)
+        steps = None if ALL and failure["step"] else int(1.5 * failure["step"] * shorter) + 500
+        summary = self.run_scene(changed, steps)
         self.assertEqual(summary["status"], "completed", f"{name}: {failure['remedy']}: {summary.get('failure')}")
 
 
@@ -171,8 +173,8 @@ class A_leak_is_judged_by_the_strain_of_the_flow(Case):
 
     def test_a_cell_that_leaks_2_percent_in_a_strain_of_1_is_stopped_in_space(self):
         self.check("leak in a tube", one_cell("two-cells-3d.json", self.TUBE,
-                                              {"mean_velocity": "1 mm/s", "duration": "6 ms"}, density_factor=400, tau=2.0,
-                                              kernel="sharp6", coupling="auto"),
+                                              {"mean_velocity": "1 mm/s", "duration": "6 ms"}, density_factor=400,
+                                              tau=2.0, kernel="sharp6", coupling="auto"),
                    "area_drift", "while the flow strained by 1", "lower numerics.density_factor")
 
 
