@@ -149,9 +149,9 @@ TEST_CASE("the momentum that the fluid gains is what membranes and a driving for
 namespace {
 
 /// Means over the second half of some strain, over viscosity times shear rate, of the stresses on the walls (`fluid`:
-/// without what membranes hand on to them) and of the particles' (`pairs`: what cells do to each other). What speeds the
-/// fluid up meanwhile: its momentum, by which the two walls differ, and the moment of that about the middle, by which walls
-/// and particles do.
+/// without what membranes hand on to them) and of the particles' (`pairs`: what cells do to each other). And what
+/// speeds the fluid up meanwhile: `gain` of its momentum, by which the two walls differ, and `rise` of the moment of
+/// that about the middle, by which walls and particles do.
 struct Means {
   double lower = 0, upper = 0, fluid = 0, particles = 0, pairs = 0, rise = 0, gain = 0;
 };
