@@ -144,4 +144,3 @@ std::vector<Check> process_checks() {
 std::vector<Check> speed_checks() { return {{"budget", Level::speed, "is as fast as it claims", {"compute"}, budget}}; }
 
 }  // namespace rouleau::conform
-
