@@ -134,7 +134,8 @@ std::string viscosity_in_words(const Json& summary) {
     const Json& deviation = viscosity.at("deviation");  // null where a single output has a value
     if (!deviation.is_number()) return {};              // a single output is the value of an instant
     return "relative viscosity " + number(viscosity.at("mean"), 3) + (changes.empty() ? "" : ", " + changes) +
-           ", without an error bar (--error-bar); its outputs have a standard deviation of " + number(deviation, 2) + half;
+           ", without an error bar (--error-bar); its outputs have a standard deviation of " + number(deviation, 2) +
+           half;
   }
   return {};
 }

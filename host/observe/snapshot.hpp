@@ -133,7 +133,7 @@ struct Snapshot {
   double mach_max = 0;
   double area_drift_max = 0;  ///< relative
   double area_leakage_max =
-      0;                  ///< relative: what the area correction kept from leaking within a strain of one, of the worst cell
+      0;  ///< relative: what the area correction kept from leaking within a strain of one, of the worst cell
   double mass_drift = 0;  ///< relative
   EnergySnapshot energy;
   MembraneSnapshot membranes;
