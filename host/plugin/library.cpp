@@ -159,6 +159,8 @@ Remedy remedy_of(const Manifest& manifest, bool copied) {
   return {};
 }
 
+std::atomic<bool> kept_apart = false;
+
 boost::dll::shared_library load(const Manifest& manifest, const fs::path& file) {
   (void)library_sha256(manifest);
   const bool copied = takes_after_another(file);
@@ -172,12 +174,14 @@ boost::dll::shared_library load(const Manifest& manifest, const fs::path& file) 
     refuse(manifest, "could not be loaded: " + std::string(words != nullptr ? words : error.message().c_str()),
            remedy_of(manifest, copied));
   }
-  own_pages(library.native());
+  if (kept_apart) own_pages(library.native());
   require_version(manifest);
   return library;
 }
 
 }  // namespace
+
+void keep_libraries_apart() { kept_apart = true; }
 
 fs::path checked_library(const Manifest& manifest) {
   fs::path file = library_file(manifest);

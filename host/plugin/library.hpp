@@ -13,10 +13,14 @@ namespace rouleau::plugin {
 
 /// The model that a manifest describes. Opens its library (RTLD_NOW | RTLD_LOCAL) after checking that it lies beside
 /// the manifest (no path, no link out), is the one that a lock may ask for, and exports rouleau_open_v1; never unloads
-/// it, so the result is valid for ever, and keeps it apart from its file. The library is the one that was there when the
-/// manifest was read: one that was built anew is loaded beside the old one, of a manifest that is read anew. Throws
-/// Error(plugin_refused) with manifest, library path and the loader's own words.
+/// it, so the result is valid for ever. The library is the one that was there when the manifest was read: one that was
+/// built anew is loaded beside the old one, of a manifest that is read anew. Throws Error(plugin_refused) with manifest,
+/// library path and the loader's own words.
 const rouleau_model& open_model(const Manifest& manifest);
+
+/// From now on a library stays what it is even where somebody writes to its file or cuts it short: for processes in which
+/// plugins are built. Profilers then know its code by address alone.
+void keep_libraries_apart();
 
 // The steps that open_model takes, for the conformance tests; each throws as it does.
 

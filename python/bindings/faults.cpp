@@ -11,6 +11,7 @@
 
 #include "base/foreign_call.hpp"
 #include "base/signal_stack.hpp"
+#include "plugin/library.hpp"
 
 namespace rouleau::python {
 
@@ -53,6 +54,7 @@ void on_end() {
 }  // namespace
 
 void prepare_process() {
+  plugin::keep_libraries_apart();
   struct sigaction action {};
   action.sa_sigaction = on_fatal_signal;
   action.sa_flags = SA_SIGINFO | SA_ONSTACK;

@@ -33,6 +33,7 @@ PLACEHOLDERS = [
     (r"\bLIMITS\b", "limits/shear-rate.json"),
     (r"\bMANIFEST(\.\.\.)?(?!\w)", "build/release/lib/rouleau/plugins/interaction/morse/morse.json --level interface"),
     (r"\bKIND NAME\b", "interaction org.example.documented"),
+    (r"\bscene TEMPLATE\b", "scene demo"),
     (r"\bDIR\b", "runs/demo"),
     (r"\bFILE\b", "runs/written"),
     (r"\[options\]", ""),

@@ -57,6 +57,7 @@ TEST_CASE("a library that was built anew is loaded beside the old one, for a man
   const PluginFolder folder;
   const fs::path library = folder.copy(TESTED_models, "libgood.so");
   const Manifest before = manifest_in(folder);
+  keep_libraries_apart();
   const rouleau_model& old = open_model(before);
   const std::string old_hash = library_sha256(before);
   for (const bool in_place : {false, true}) {
@@ -77,6 +78,7 @@ TEST_CASE("a library that is loaded stays what it is when its file is written to
   const PluginFolder folder;
   const fs::path library = folder.copy(TESTED_models, "libgood.so");
   const Manifest manifest = manifest_in(folder);
+  keep_libraries_apart();
   const rouleau_model& model = open_model(manifest);
   std::ofstream(library, std::ios::binary) << std::string(fs::file_size(library), '\0');
   fs::resize_file(library, 0);
