@@ -28,7 +28,7 @@ class Packages(Case):
         """What a user does first, in an empty environment; the plugins that the program found."""
         self.environment = {}
         program = prefix / "bin/rouleau"
-        listing = self.call(program, "plugins")
+        listing = self.call(program, "plugins", "--paths")
         self.call(program, "plan", prefix / "share/rouleau/scenes" / SCENE.name)
         self.call(program, "run", prefix / "share/rouleau/scenes" / SCENE.name, "--max-steps", "5", "--out", self.path / "run")
         self.call(program, "verify", self.path / "run")
