@@ -113,7 +113,8 @@ std::string attraction_remedy(const plan::Plan& plan, const plan::StageSetting& 
 
 std::string crossing_remedy(const plan::Plan& plan, const plan::StageSetting& stage, int cell, int other) {
   const scene::Scene& scene = *plan.scene;
-  const std::string attraction = attraction_remedy(plan, stage), finer = ", or raise the resolution";
+  const std::string finer = ", or raise the resolution";
+  std::string attraction = attraction_remedy(plan, stage);
   if (!attraction.empty()) return attraction;
   const scene::CellType &mine = scene.cell_types[scene.cells[cell].type],
                         &its = scene.cell_types[scene.cells[other].type];

@@ -34,6 +34,7 @@ std::vector<std::vector<int>> groups_by(const std::vector<ContactSnapshot>& cont
   std::map<int, std::vector<int>> groups;
   for (std::size_t cell = 0; cell < cells; ++cell) groups[label[cell]].push_back(static_cast<int>(cell));
   std::vector<std::vector<int>> result;
+  result.reserve(groups.size());
   for (auto& [first, members] : groups) result.push_back(std::move(members));
   return result;
 }
