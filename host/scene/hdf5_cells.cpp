@@ -41,7 +41,7 @@ class Hdf5Table {
  private:
   /// Its path, when its length is right.
   std::string checked(std::size_t column) {
-    const std::string path = '/' + names_[column];
+    std::string path = '/' + names_[column];
     row_ = no_row;
     const std::vector<std::size_t> shape = opened_.shape(path);
     if (shape.size() != 1) refuse_(column, "this is no dataset of one dimension, a value for each cell");

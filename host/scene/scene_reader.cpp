@@ -102,7 +102,7 @@ Eigen::Vector2d SceneFields::quantities(const std::string& pointer, std::string_
 std::filesystem::path SceneFields::file(const std::string& pointer) const {
   const auto name = value<std::string>(pointer);
   if (name.find('\0') != std::string::npos) refuse(pointer, "a file's name cannot hold a NUL character");
-  const auto file = std::filesystem::path(document_.file()).parent_path() / name;
+  auto file = std::filesystem::path(document_.file()).parent_path() / name;
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
     refuse(pointer,
