@@ -38,10 +38,11 @@ def scene_of(case: dict, base: str) -> str:
 
 
 def plan(program: pathlib.Path, folder: pathlib.Path, name: str, scene: str, *options: str) -> tuple[int, str]:
-    """Exit code and error stream."""
+    """Exit code and error stream, without what is said there while cells are placed for seconds."""
     (folder / name).write_bytes(scene.encode(errors="surrogateescape"))
     run = subprocess.run([program, "plan", name, *options], cwd=folder, capture_output=True, timeout=60)
-    return run.returncode, run.stderr.decode(errors="surrogateescape")
+    said = run.stderr.decode(errors="surrogateescape").splitlines(keepends=True)
+    return run.returncode, "".join(line for line in said if not line.startswith("placing cells at random: "))
 
 
 def faults(program: pathlib.Path, folder: pathlib.Path, name: str, case: dict, base: str) -> list[str]:
