@@ -23,7 +23,7 @@ function meanOf(summary, name) {
 function withError(value, error, spread = null) {
   const known = error > 0 ? error : Math.max(spread ?? 0, value ? 10 ** (Math.floor(Math.log10(Math.abs(value))) - 2) : 0);
   if (!(error > 0) && (!(spread > 0) || known > spread || Math.abs(value) < 1e-3 || Math.abs(value) >= 1e6)) return format(value, 3);
-  const size = Math.floor(Math.log10(known)), decimals = Math.max(0, Math.min(8, 1 - size - (known / 10 ** size >= 2 ? 1 : 0)));
+  const size = Math.floor(Math.log10(known)), most = error > 0 ? 8 : 2 - Math.floor(Math.log10(Math.abs(value))), decimals = Math.max(0, Math.min(most, 1 - size - (known / 10 ** size >= 2 ? 1 : 0)));
   const up = Math.ceil(known * 10 ** decimals * (1 - 1e-12)) / 10 ** decimals;
   return (error > 0 ? `${value.toFixed(decimals)} ± ${up.toFixed(decimals)}` : value.toFixed(decimals)).replace("-", "−");
 }
