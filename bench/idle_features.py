@@ -40,7 +40,7 @@ class Counter:
 
     def __init__(self, build: Path, folder: Path, pool: concurrent.futures.Executor):
         self.build, self.folder, self.pool = build, folder, pool
-        folder.mkdir()
+        folder.mkdir(exist_ok=True)
 
     def scene(self, name: str, scene: dict, apart: tuple = ()) -> Callable[[], float]:
         file = self.folder / f"{name}.json"
