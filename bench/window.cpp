@@ -147,7 +147,7 @@ std::optional<std::array<double, D>> into(const core::Box<D>& window, const core
 template <int D>
 Window<D> window_around(const plan::Plan& plan, const core::Decomposition<D>& blocks, int rank) {
   const scene::Scene& scene = *plan.scene;
-  const double spacing = plan::lattice_spacing(scene);
+  const double spacing = scene::lattice_spacing(scene);
   const core::Domain<D> lattice = blocks.domain(rank);
   auto setup = plan::make_solver_setup<D>(plan, 0);
 

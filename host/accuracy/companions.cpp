@@ -10,10 +10,10 @@
 #include "json/document.hpp"
 #include "plan/error_model.hpp"
 #include "plan/estimate.hpp"
-#include "plan/lattice_size.hpp"
 #include "plan/stability_limits.hpp"
-#include "plan/stage_scales.hpp"
 #include "scene/driving_flow.hpp"
+#include "scene/lattice.hpp"
+#include "scene/stage_scales.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
 
@@ -76,7 +76,7 @@ bool start_matters(const scene::Scene& scene) {
 /// Of second order in the spacing.
 bool is_corrected(const scene::Scene& scene) { return scene.cells.empty() || scene.numerics.slip_correction; }
 
-using plan::LatticeSize, plan::lattice_size;
+using scene::LatticeSize, scene::lattice_size;
 
 std::string in_words(const LatticeSize& size) {
   std::string words;
@@ -163,7 +163,7 @@ bool go_on(Json& scene) {
 struct CoarserLattices {
   explicit CoarserLattices(const scene::Scene& scene) : nodes_(lattice_size(scene.domain)), radius_(INFINITY) {
     for (const int nodes : nodes_) parts_ = std::gcd(parts_, nodes);
-    if (!scene.cells.empty()) radius_ = shape::smallest_radius(scene) / plan::lattice_spacing(scene);
+    if (!scene.cells.empty()) radius_ = shape::smallest_radius(scene) / scene::lattice_spacing(scene);
     least_ = plan::least_radii(scene, plan::membrane_coupling(scene.numerics));
   }
   [[nodiscard]] int parts() const { return parts_; }
@@ -213,7 +213,7 @@ struct Changes {
 double compression(const scene::Scene& scene) {
   double most = 0;
   for (std::size_t i = 0; i < scene.stages.size(); ++i) {
-    const double step = plan::make_stage_setting(scene, static_cast<int>(i)).units.time;
+    const double step = scene::make_stage_setting(scene, static_cast<int>(i)).units.time;
     most = std::max(
         most, plan::compression_by_shear(scene.numerics.tau, step * scene::mean_shear_rate(scene.stages[i], scene)));
   }

@@ -18,9 +18,9 @@ namespace {
 /// that `plan` limits to 0.1, and not at 10 times (docs/stability.md).
 constexpr double calm_compression = plan::largest_compression_by_attraction / 2, deepest_over_shear_modulus = 8.4;
 
-plugin::ModelInstance instance(const plan::Plan& plan, std::size_t interaction, const plan::StageSetting& stage) {
+plugin::ModelInstance instance(const plan::Plan& plan, std::size_t interaction, const scene::StageSetting& stage) {
   const plan::PlannedModel& model = plan.interactions[interaction];
-  return {*model.manifest, model.parameters.values, stage.model_setting(plan.scene->fluid.inertia)};
+  return {*model.manifest, model.parameters.values, plan::model_setting(stage, plan.scene->fluid.inertia)};
 }
 
 bool between_cells(const plan::Plan& plan, std::size_t i) {
@@ -51,10 +51,10 @@ std::string new_repulsion(const std::string& type, const std::string& other, con
 std::string rounded(double value) { return number(std::stod(number(value, 2))); }
 
 /// Of this stage and of those after it that have a larger one.
-std::string lower_density(const plan::Plan& plan, const plan::StageSetting& stage, double share) {
+std::string lower_density(const plan::Plan& plan, const scene::StageSetting& stage, double share) {
   const double factor = stage.stage->density_factor * share;
   std::vector<std::string> keys;
-  for (const plan::StageSetting& later : plan.stages) {
+  for (const scene::StageSetting& later : plan.stages) {
     const std::string& key = later.stage->density_factor_key;
     if (later.index >= stage.index && later.stage->density_factor > factor &&
         std::find(keys.begin(), keys.end(), key) == keys.end())
@@ -63,13 +63,13 @@ std::string lower_density(const plan::Plan& plan, const plan::StageSetting& stag
   return "lower " + all_of(keys) + " to " + rounded(factor);
 }
 
-std::string micrometres(double spacings, const plan::StageSetting& stage) {
+std::string micrometres(double spacings, const scene::StageSetting& stage) {
   return number(spacings * stage.units.length * 1e6, 3) + " um";
 }
 
 }  // namespace
 
-std::string attraction_remedy(const plan::Plan& plan, const plan::StageSetting& stage) {
+std::string attraction_remedy(const plan::Plan& plan, const scene::StageSetting& stage) {
   const scene::Scene& scene = *plan.scene;
   bool attracts = false;
   double depth = 0, compression = 0;
@@ -83,7 +83,7 @@ std::string attraction_remedy(const plan::Plan& plan, const plan::StageSetting& 
     if (!well) continue;
     depth = std::max(depth, stage.units.to_si(well->depth, units::dimension::tension));
     compression = std::max(compression, 3 * well->attraction);
-    const plugin::ModelSetting setting = stage.model_setting(scene.fluid.inertia);
+    const plugin::ModelSetting setting = plan::model_setting(stage, scene.fluid.inertia);
     if (!(plan::depth_over_bending(plan, scene.interactions[i], well->depth, setting) >
           plan::deepest_well_of_bare_faces))
       continue;
@@ -111,7 +111,7 @@ std::string attraction_remedy(const plan::Plan& plan, const plan::StageSetting& 
   return all_of(ways);
 }
 
-std::string crossing_remedy(const plan::Plan& plan, const plan::StageSetting& stage, int cell, int other) {
+std::string crossing_remedy(const plan::Plan& plan, const scene::StageSetting& stage, int cell, int other) {
   const scene::Scene& scene = *plan.scene;
   const std::string finer = ", or raise the resolution";
   std::string attraction = attraction_remedy(plan, stage);
@@ -132,7 +132,7 @@ std::string crossing_remedy(const plan::Plan& plan, const plan::StageSetting& st
 
 template <int D>
 void blame_contact(Failure& failure, core::Surroundings<D>& around, const plan::Plan& plan,
-                   const plan::StageSetting& stage) {
+                   const scene::StageSetting& stage) {
   struct Pressed {
     double pressure = 0, gap = 0;  // lattice units; positive: pushed apart
     int cell = 0, other = 0, interaction = 0;
@@ -146,7 +146,7 @@ void blame_contact(Failure& failure, core::Surroundings<D>& around, const plan::
     around.show(cutoff);
     const auto& between = scene.interactions[i].between;
     for (const observe::CellContact& contact :
-         observe::find_touching_cells(around.cells(), plan::lattice_domain<D>(scene), cutoff)) {
+         observe::find_touching_cells(around.cells(), scene::lattice_domain<D>(scene), cutoff)) {
       const int a = scene.cells[contact.cell_a].type, b = scene.cells[contact.cell_b].type;
       if (!(a == between[0] && b == between[1]) && !(a == between[1] && b == between[0])) continue;
       const double pressure = plan::force_at(potential, std::max(contact.gap, 1e-9 * cutoff));
@@ -175,7 +175,7 @@ void blame_contact(Failure& failure, core::Surroundings<D>& around, const plan::
                    lower_density(plan, stage, calm_compression / (3 * most.pressure));
 }
 
-template void blame_contact(Failure&, core::Surroundings<2>&, const plan::Plan&, const plan::StageSetting&);
-template void blame_contact(Failure&, core::Surroundings<3>&, const plan::Plan&, const plan::StageSetting&);
+template void blame_contact(Failure&, core::Surroundings<2>&, const plan::Plan&, const scene::StageSetting&);
+template void blame_contact(Failure&, core::Surroundings<3>&, const plan::Plan&, const scene::StageSetting&);
 
 }  // namespace rouleau::monitor

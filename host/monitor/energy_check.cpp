@@ -11,7 +11,7 @@ namespace rouleau::monitor {
 template <int D>
 std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const core::CellNodes& cells,
                                     const core::Ranks<D>& ranks, const plan::Plan& plan,
-                                    const plan::StageSetting& setting) {
+                                    const scene::StageSetting& setting) {
   const double growth = core::of_first(ranks, energy.relative_growth());
   const double limit = plan.scene->checks.energy_growth;
   if (growth <= limit) return std::nullopt;
@@ -37,8 +37,8 @@ std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const 
 }
 
 template std::optional<Failure> check_energy(const observe::EnergyHistory&, const core::CellNodes&,
-                                             const core::Ranks<2>&, const plan::Plan&, const plan::StageSetting&);
+                                             const core::Ranks<2>&, const plan::Plan&, const scene::StageSetting&);
 template std::optional<Failure> check_energy(const observe::EnergyHistory&, const core::CellNodes&,
-                                             const core::Ranks<3>&, const plan::Plan&, const plan::StageSetting&);
+                                             const core::Ranks<3>&, const plan::Plan&, const scene::StageSetting&);
 
 }  // namespace rouleau::monitor

@@ -17,6 +17,6 @@ namespace rouleau::monitor {
 template <int D>
 std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const core::CellNodes& cells,
                                     const core::Ranks<D>& ranks, const plan::Plan& plan,
-                                    const plan::StageSetting& setting);
+                                    const scene::StageSetting& setting);
 
 }  // namespace rouleau::monitor

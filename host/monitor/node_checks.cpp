@@ -60,7 +60,7 @@ template void locate_failure<3>(Failure&, const FoundNode&, double);
 
 template <class T, class Set>
 std::optional<Failure> check_nodes(const core::Solver<T, Set>& solver, double limit,
-                                   const plan::StageSetting& setting) {
+                                   const scene::StageSetting& setting) {
   const core::CellNodes& cells = solver.cells();
   if (cells.cells.empty()) return std::nullopt;
   Failure f;
@@ -84,10 +84,11 @@ std::optional<Failure> check_nodes(const core::Solver<T, Set>& solver, double li
   return f;
 }
 
-template std::optional<Failure> check_nodes(const core::Solver<float>&, double, const plan::StageSetting&);
-template std::optional<Failure> check_nodes(const core::Solver<double>&, double, const plan::StageSetting&);
-template std::optional<Failure> check_nodes(const core::Solver<float, core::D3Q19>&, double, const plan::StageSetting&);
+template std::optional<Failure> check_nodes(const core::Solver<float>&, double, const scene::StageSetting&);
+template std::optional<Failure> check_nodes(const core::Solver<double>&, double, const scene::StageSetting&);
+template std::optional<Failure> check_nodes(const core::Solver<float, core::D3Q19>&, double,
+                                            const scene::StageSetting&);
 template std::optional<Failure> check_nodes(const core::Solver<double, core::D3Q19>&, double,
-                                            const plan::StageSetting&);
+                                            const scene::StageSetting&);
 
 }  // namespace rouleau::monitor

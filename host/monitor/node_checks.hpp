@@ -6,8 +6,8 @@
 
 #include "core/solver/solver.hpp"
 #include "failure.hpp"
-#include "plan/stage_scales.hpp"
 #include "scene/scene.hpp"
+#include "scene/stage_scales.hpp"
 
 namespace rouleau::monitor {
 
@@ -35,6 +35,7 @@ void locate_failure(Failure& failure, const FoundNode& node, double spacing);
 /// The first check that the last step failed, without its time: a node that moved further than `limit` lattice
 /// spacings, is nowhere, or has left the domain. All ranks ask together, and get the same.
 template <class T, class Set>
-std::optional<Failure> check_nodes(const core::Solver<T, Set>& solver, double limit, const plan::StageSetting& setting);
+std::optional<Failure> check_nodes(const core::Solver<T, Set>& solver, double limit,
+                                   const scene::StageSetting& setting);
 
 }  // namespace rouleau::monitor

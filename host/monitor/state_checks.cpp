@@ -101,7 +101,7 @@ std::optional<Failure> check_stretch(const core::Membranes& membranes, const sce
   return std::nullopt;
 }
 
-Failure crossing_failure(int cell, int other, bool inside, const plan::Plan& plan, const plan::StageSetting& stage) {
+Failure crossing_failure(int cell, int other, bool inside, const plan::Plan& plan, const scene::StageSetting& stage) {
   return failure("crossing", {}, cell, 0, 0,
                  cell == other ? "the membrane of a cell crosses itself"
                                : "the membranes of cells " + std::to_string(cell) + " and " + std::to_string(other) +
@@ -127,7 +127,7 @@ Drift largest_drift(observe::Observer& observer, const Cells& cells, const core:
 }
 
 /// What an area or a volume that drifts means, and what to do about it.
-Failure drift_failure(const Drift& drift, const plan::Plan& plan, const plan::StageSetting& setting) {
+Failure drift_failure(const Drift& drift, const plan::Plan& plan, const scene::StageSetting& setting) {
   const scene::Scene& scene = *plan.scene;
   const bool in_space = scene.domain.depth.has_value();
   const std::string measure = in_space ? "volume" : "area";
@@ -157,7 +157,7 @@ std::array<double, 2> by_cell(const std::optional<Failure>& found) {
   return {found ? static_cast<double>(found->cell) : 0.0, 0.0};
 }
 
-std::optional<Failure> check_cells(observe::Observer& observer, const plan::StageSetting& setting,
+std::optional<Failure> check_cells(observe::Observer& observer, const scene::StageSetting& setting,
                                    core::Surroundings<2>& around, const plan::Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   const core::Membranes& membranes = around.cells();
@@ -187,7 +187,7 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
   return first_failure(ranks, crosses, order);
 }
 
-std::optional<Failure> check_cells(observe::Observer& observer, const plan::StageSetting& setting,
+std::optional<Failure> check_cells(observe::Observer& observer, const scene::StageSetting& setting,
                                    core::Surroundings<3>& around, const plan::Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   const core::Surfaces& surfaces = around.cells();
@@ -221,7 +221,7 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
   std::optional<Failure> crosses;
   std::array<double, 2> order{};
   around.show(core::SurfaceCrossing::deepest);
-  if (const auto crossing = core::find_crossing(surfaces, plan::lattice_domain<3>(scene))) {
+  if (const auto crossing = core::find_crossing(surfaces, scene::lattice_domain<3>(scene))) {
     const auto node = static_cast<std::size_t>(crossing->node);
     crosses = at(crossing_failure(crossing->cell, crossing->other, false, plan, setting),
                  {surfaces.x[node], surfaces.y[node], surfaces.z[node]});
@@ -234,8 +234,8 @@ std::optional<Failure> check_cells(observe::Observer& observer, const plan::Stag
 
 template <class T, class Set>
 std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, Set>& solver,
-                                   const plan::StageSetting& setting, const typename core::Solver<T, Set>::Cells& cells,
-                                   const plan::Plan& plan) {
+                                   const scene::StageSetting& setting,
+                                   const typename core::Solver<T, Set>::Cells& cells, const plan::Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   const units::LatticeUnits& units = setting.units;
   const auto place = [&](double x, double y) {
@@ -264,8 +264,8 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, 
   return check_cells(observer, setting, around, plan);
 }
 
-#define ROULEAU_INSTANTIATE(T, Set)                                                                                 \
-  template std::optional<Failure> check_state(observe::Observer&, core::Solver<T, Set>&, const plan::StageSetting&, \
+#define ROULEAU_INSTANTIATE(T, Set)                                                                                  \
+  template std::optional<Failure> check_state(observe::Observer&, core::Solver<T, Set>&, const scene::StageSetting&, \
                                               const typename core::Solver<T, Set>::Cells&, const plan::Plan&);
 ROULEAU_INSTANTIATE(float, core::D2Q9)
 ROULEAU_INSTANTIATE(double, core::D2Q9)

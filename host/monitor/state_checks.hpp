@@ -15,7 +15,7 @@ namespace rouleau::monitor {
 /// number and areas. All ranks together, and all find the same.
 template <class T, class Set>
 std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, Set>& solver,
-                                   const plan::StageSetting& setting, const typename core::Solver<T, Set>::Cells& cells,
-                                   const plan::Plan& plan);
+                                   const scene::StageSetting& setting,
+                                   const typename core::Solver<T, Set>::Cells& cells, const plan::Plan& plan);
 
 }  // namespace rouleau::monitor

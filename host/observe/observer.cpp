@@ -13,9 +13,9 @@
 #include "fields.hpp"
 #include "membrane_fields.hpp"
 #include "particle_stress.hpp"
-#include "plan/solver_setup.hpp"
 #include "rheology.hpp"
 #include "scene/driving_flow.hpp"
+#include "scene/lattice.hpp"
 
 namespace rouleau::observe {
 
@@ -66,7 +66,7 @@ Change largest_change(const core::CellNodes& cells, const core::Ranks<D>& ranks,
 
 }  // namespace
 
-Observer::Observer(const scene::Scene& scene) : scene_(&scene), domain_(plan::lattice_domain(scene)) {}
+Observer::Observer(const scene::Scene& scene) : scene_(&scene), domain_(scene::lattice_domain(scene)) {}
 
 template <class Cells>
 void Observer::begin_with(const Cells& cells) {
@@ -129,7 +129,7 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
   const double length = units.length, touching = scene_->output.aggregate_gap / length;
   const auto& cells = around.cells();
   const core::Ranks<D> ranks = around.ranks();
-  const core::Domain<D> domain = plan::lattice_domain<D>(*scene_);
+  const core::Domain<D> domain = scene::lattice_domain<D>(*scene_);
   around.show(touching);
   std::vector<CellContact> contacts = core::to_first(ranks, find_touching_cells(cells, domain, touching));
   const std::vector<double> gaps = smallest_gaps(around, domain);
@@ -202,7 +202,7 @@ void Observer::follow_stretch(const core::StretchRange& stretch, CellSnapshot& s
 }
 
 template <class T, class Set>
-Snapshot Observer::observe(core::Solver<T, Set>& solver, const plan::StageSetting& setting,
+Snapshot Observer::observe(core::Solver<T, Set>& solver, const scene::StageSetting& setting,
                            const typename core::Solver<T, Set>::Cells& cells, bool with_fields) {
   const units::LatticeUnits& units = setting.units;
   Snapshot snapshot;
@@ -246,7 +246,7 @@ Snapshot Observer::observe(core::Solver<T, Set>& solver, const plan::StageSettin
   if (!cells.cells.empty()) {
     const core::Ranks<Set::dimension>& ranks = solver.ranks();
     if (!scene_->domain.periodic_y) {
-      const core::Domain<Set::dimension> domain = plan::lattice_domain<Set::dimension>(*scene_);
+      const core::Domain<Set::dimension> domain = scene::lattice_domain<Set::dimension>(*scene_);
       const CellFreeLayer layer = [&] {
         if constexpr (Set::dimension == 3) {
           if (const std::optional<double> radius = scene_->domain.tube_radius)
@@ -288,11 +288,11 @@ template double Observer::momentum_residual(const core::CellNodes&, const std::a
                                             const core::Ranks<2>&);
 template double Observer::momentum_residual(const core::CellNodes&, const std::array<double, 2>&,
                                             const core::Ranks<3>&);
-template Snapshot Observer::observe(core::Solver<float>&, const plan::StageSetting&, const core::Membranes&, bool);
-template Snapshot Observer::observe(core::Solver<double>&, const plan::StageSetting&, const core::Membranes&, bool);
-template Snapshot Observer::observe(core::Solver<float, core::D3Q19>&, const plan::StageSetting&, const core::Surfaces&,
-                                    bool);
-template Snapshot Observer::observe(core::Solver<double, core::D3Q19>&, const plan::StageSetting&,
+template Snapshot Observer::observe(core::Solver<float>&, const scene::StageSetting&, const core::Membranes&, bool);
+template Snapshot Observer::observe(core::Solver<double>&, const scene::StageSetting&, const core::Membranes&, bool);
+template Snapshot Observer::observe(core::Solver<float, core::D3Q19>&, const scene::StageSetting&,
+                                    const core::Surfaces&, bool);
+template Snapshot Observer::observe(core::Solver<double, core::D3Q19>&, const scene::StageSetting&,
                                     const core::Surfaces&, bool);
 template double Observer::follow_fluid(core::Fluid<float>&);
 template double Observer::follow_fluid(core::Fluid<double>&);

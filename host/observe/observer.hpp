@@ -10,8 +10,8 @@
 #include "core/membrane/geometry.hpp"
 #include "core/solver/solver.hpp"
 #include "json/json.hpp"
-#include "plan/stage_scales.hpp"
 #include "rotation.hpp"
+#include "scene/stage_scales.hpp"
 #include "snapshot.hpp"
 
 namespace rouleau::core {
@@ -39,7 +39,7 @@ class Observer {
   /// State before the next step of `solver`, whose forces must have been computed. `with_fields`: fields are due. All
   /// ranks together; what is about cells comes to the first, and fields give what they have to it.
   template <class T, class Set>
-  Snapshot observe(core::Solver<T, Set>& solver, const plan::StageSetting& setting,
+  Snapshot observe(core::Solver<T, Set>& solver, const scene::StageSetting& setting,
                    const typename core::Solver<T, Set>::Cells& cells, bool with_fields);
 
   /// Follows mass and Mach number; returns the latter, which is NaN if the fluid holds a value that is no number.

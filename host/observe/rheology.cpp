@@ -8,7 +8,7 @@
 
 namespace rouleau::observe {
 
-bool is_driven_channel(const plan::StageSetting& setting, const scene::Scene& scene) {
+bool is_driven_channel(const scene::StageSetting& setting, const scene::Scene& scene) {
   return setting.largest_body_force_x() != 0 && setting.fastest_wall() == 0 && !scene.domain.periodic_y;
 }
 
@@ -26,7 +26,7 @@ template double flow_rate(const core::Fluid<double>&);
 template double flow_rate(const core::Fluid<float, core::D3Q19>&);
 template double flow_rate(const core::Fluid<double, core::D3Q19>&);
 
-double apparent_viscosity(double flow_rate, double body_force, const plan::StageSetting& setting, int height) {
+double apparent_viscosity(double flow_rate, double body_force, const scene::StageSetting& setting, int height) {
   const double viscosity = core::viscosity_of(setting.tau);
   const double alone = body_force * std::pow(height, 3) / (12 * viscosity);
   // In its first step a fluid at rest comes to flow at the force times the height.

@@ -6,13 +6,13 @@
 
 #include "core/fluid/fluid.hpp"
 #include "core/membrane/membranes.hpp"
-#include "plan/stage_scales.hpp"
+#include "scene/stage_scales.hpp"
 #include "snapshot.hpp"
 
 namespace rouleau::observe {
 
 /// Whether a force along x drives this stage's fluid between walls at rest: a flow with a flow rate.
-bool is_driven_channel(const plan::StageSetting& setting, const scene::Scene& scene);
+bool is_driven_channel(const scene::StageSetting& setting, const scene::Scene& scene);
 
 /// Integral of the velocity along x over the height, averaged over the length; lattice units. Exact for velocities that
 /// are parabolas in y (midpoint rule with its end correction; the walls' velocity counts as a value). The fluid must be
@@ -22,7 +22,7 @@ double flow_rate(const core::Fluid<T, Set>& fluid);
 
 /// Flow rate of the suspending fluid alone, G H^3 / (12 mu) of plane Poiseuille flow, over `flow_rate` (lattice): the
 /// relative apparent viscosity of a driven suspension. Not a number where nothing flows but rounding.
-double apparent_viscosity(double flow_rate, double body_force, const plan::StageSetting& setting, int height);
+double apparent_viscosity(double flow_rate, double body_force, const scene::StageSetting& setting, int height);
 
 /// Number of aggregates by their number of cells, from a label for each cell.
 std::map<int, int> aggregate_sizes(const std::vector<int>& label);

@@ -15,7 +15,7 @@ constexpr double threshold = 0.002;
 
 }  // namespace
 
-CellTravel cell_travel(const scene::Scene& scene, const StageSetting& stage) {
+CellTravel cell_travel(const scene::Scene& scene, const scene::StageSetting& stage) {
   if (scene.fluid.inertia || scene.cells.empty() || !scene::has_walls(scene.domain)) return {};
   const bool across_z = scene.domain.periodic_y;
   const double spacing = stage.units.length, height = scene::wall_distance(scene.domain) / spacing;
@@ -55,7 +55,7 @@ CellTravel cell_travel(const scene::Scene& scene, const StageSetting& stage) {
   return travel;
 }
 
-bool follows_cells(const scene::Scene& scene, const StageSetting& stage) {
+bool follows_cells(const scene::Scene& scene, const scene::StageSetting& stage) {
   if (scene.fluid.inertia || scene.cells.empty() || scene.domain.depth) return false;
   // Between no walls a driven fluid goes faster and faster, and cells with it.
   return scene.domain.periodic_y ? stage.is_driven() : cell_travel(scene, stage).mean > threshold;

@@ -1,7 +1,7 @@
 // How fast cells travel with the undisturbed flow, for the unsteady term of creeping flow.
 #pragma once
 
-#include "stage_scales.hpp"
+#include "scene/stage_scales.hpp"
 
 namespace rouleau::plan {
 
@@ -13,12 +13,12 @@ struct CellTravel {
   double spread = 0;  ///< of the cell that is farthest from their mean
 };
 /// None without cells and where convective inertia is kept.
-CellTravel cell_travel(const scene::Scene& scene, const StageSetting& stage);
+CellTravel cell_travel(const scene::Scene& scene, const scene::StageSetting& stage);
 
 /// The fluid is computed in a frame that moves with the cells where these travel together. Otherwise a capsule drifts across
 /// a shear flow in proportion to the mean, by 0.87 of its radius within a strain of 8 at a mean of 2 (docs/rheology.md): the
 /// threshold allows 0.001.
 /// Not in three dimensions, whose fluid has no such frame.
-bool follows_cells(const scene::Scene& scene, const StageSetting& stage);
+bool follows_cells(const scene::Scene& scene, const scene::StageSetting& stage);
 
 }  // namespace rouleau::plan

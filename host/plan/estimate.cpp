@@ -7,9 +7,9 @@
 #include "base/error.hpp"
 #include "base/process.hpp"
 #include "base/text.hpp"
-#include "lattice_size.hpp"
 #include "output_schedule.hpp"
 #include "plugin/handles.hpp"
+#include "scene/lattice.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
 #include "stability_limits.hpp"
@@ -34,7 +34,7 @@ struct Counts {
   double cells = 0, fields = 0;
 };
 
-Counts count_outputs(const scene::Scene& scene, const StageSetting& stage) {
+Counts count_outputs(const scene::Scene& scene, const scene::StageSetting& stage) {
   const OutputSchedule cells(scene.output.cells, stage, true), fields(scene.output.fields, stage, false);
   constexpr int most = 20000;
   Counts counts;
@@ -55,9 +55,9 @@ Counts count_outputs(const scene::Scene& scene, const StageSetting& stage) {
   return counts;
 }
 
-OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<StageSetting>& stages) {
+OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<scene::StageSetting>& stages) {
   OutputEstimate estimate;
-  for (const StageSetting& stage : stages) {
+  for (const scene::StageSetting& stage : stages) {
     const Counts counts = count_outputs(scene, stage);
     estimate.outputs += counts.cells;
     estimate.field_outputs += counts.fields;
@@ -104,7 +104,7 @@ double largest_cutoff(const Plan& plan) {
     const scene::Interaction& between = plan.scene->interactions[i];
     if (!model.active() || between.with_wall()) continue;
     const plugin::ModelInstance potential(*model.manifest, model.parameters.values,
-                                          plan.stages.front().model_setting(plan.scene->fluid.inertia));
+                                          model_setting(plan.stages.front(), plan.scene->fluid.inertia));
     largest = std::max(largest, potential.interaction().cutoff(potential.self()));
   }
   return largest;
@@ -157,7 +157,7 @@ MembraneScheme membrane_scheme(const Plan& plan) {
   if (!scene.domain.depth) return {};
   const double cutoff = largest_cutoff(plan);
   return {.cutoff = cutoff,
-          .near = surfaces_near_a_node(scene, cutoff * lattice_spacing(scene)),
+          .near = surfaces_near_a_node(scene, cutoff * scene::lattice_spacing(scene)),
           .sharp_kernel = kernel_named(scene.numerics.kernel).kind == core::KernelKind::sharp6,
           .slip_correction = scene.numerics.slip_correction,
           .viscosity_contrast = plan.viscosity_contrast,
@@ -189,9 +189,9 @@ Estimate estimate(const Plan& plan) {
   const double membrane = membrane_nodes(scene);
   const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
   Estimate estimate;
-  for (const StageSetting& stage : plan.stages) estimate.steps += static_cast<double>(stage.max_steps);
-  estimate.wall_s = estimate.steps * step_cost(fluid_nodes(scene.domain), membrane, scene.numerics.precision, dimension,
-                                               membrane_scheme(plan));
+  for (const scene::StageSetting& stage : plan.stages) estimate.steps += static_cast<double>(stage.max_steps);
+  estimate.wall_s = estimate.steps * step_cost(scene::fluid_nodes(scene.domain), membrane, scene.numerics.precision,
+                                               dimension, membrane_scheme(plan));
   estimate.memory_bytes = nodes * word *
                               (velocities + (plan.has_cells ? dimension : 0) +
                                (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +

@@ -14,8 +14,8 @@
 #include "flow_start.hpp"
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
-#include "lattice_size.hpp"
 #include "scene/driving_flow.hpp"
+#include "scene/lattice.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
@@ -67,7 +67,7 @@ class Problem {
 
  private:
   struct Trial {
-    LatticeSize nodes;
+    scene::LatticeSize nodes;
     double tau = 1, cost = 0;
     std::vector<double> density_factors;  ///< of each stage
     ErrorShares error;                    ///< of the stage where it is largest
@@ -84,15 +84,15 @@ class Problem {
     bool own_factor;                     ///< for this stage
     [[nodiscard]] bool at_rest() const { return rate == 0 && mean_wall_speed == 0; }
   };
-  [[nodiscard]] std::vector<LatticeSize> lattices() const;
+  [[nodiscard]] std::vector<scene::LatticeSize> lattices() const;
   [[nodiscard]] bool meets_target(const Trial& trial) const { return trial.error.total() <= target_ * (1 + 1e-9); }
   [[nodiscard]] bool good_enough(const Trial& trial) const { return trial.error.total() <= goal() * (1 + 1e-9); }
   /// The target; where stages with factors of their own take most of it already, half of it on top of theirs: no lattice makes
   /// up for them.
   [[nodiscard]] double goal() const;
   [[nodiscard]] Trial cheapest() const;
-  [[nodiscard]] Trial tried(const LatticeSize& nodes, double tau) const;
-  [[nodiscard]] double spacing_of(const LatticeSize& nodes) const { return scene_.domain.size.y() / nodes[1]; }
+  [[nodiscard]] Trial tried(const scene::LatticeSize& nodes, double tau) const;
+  [[nodiscard]] double spacing_of(const scene::LatticeSize& nodes) const { return scene_.domain.size.y() / nodes[1]; }
   [[nodiscard]] double time_step_of_factor_one(double spacing, double tau) const {
     return core::time_step(tau, spacing, scene_.fluid.viscosity / scene_.fluid.density);
   }
@@ -215,17 +215,17 @@ MembraneCoupling Problem::chosen_coupling() const {
   return membrane_coupling(chosen);
 }
 
-std::vector<LatticeSize> Problem::lattices() const {
+std::vector<scene::LatticeSize> Problem::lattices() const {
   const Json nodes = written_.at("domain").value("nodes", Json());
-  if (!nodes.is_null()) return {nodes.get<LatticeSize>()};
-  const LatticeSize coarsest = *coarsest_lattice(sides(scene_.domain));  // the draft has found one
+  if (!nodes.is_null()) return {nodes.get<scene::LatticeSize>()};
+  const scene::LatticeSize coarsest = *scene::coarsest_lattice(scene::sides(scene_.domain));  // the draft has found one
   // Beyond the finest lattice the plan's limits may be exceeded, and it warns.
   const double of_cells = std::min(std::max(bounds_.least_radius, least_radii(scene_, coupling_).run), finest_radius);
   const double least = has_cells_ ? of_cells : fewest_rows / 2.0;
-  std::vector<LatticeSize> found;
-  LatticeSize finest = coarsest;
+  std::vector<scene::LatticeSize> found;
+  scene::LatticeSize finest = coarsest;
   for (int factor = 1;; ++factor) {
-    const std::optional<LatticeSize> nodes_tried = refined(coarsest, factor);
+    const std::optional<scene::LatticeSize> nodes_tried = scene::refined(coarsest, factor);
     if (!nodes_tried) break;
     const double size = (has_cells_ ? radius_ : half_width()) / spacing_of(*nodes_tried);
     finest = *nodes_tried;
@@ -239,7 +239,7 @@ std::vector<LatticeSize> Problem::lattices() const {
 /// In three dimensions a few layers with periodic sides stand for a plane flow: what counts is how far walls are apart.
 double Problem::half_width() const {
   const scene::Domain& domain = scene_.domain;
-  const std::vector<double> lengths = sides(domain);
+  const std::vector<double> lengths = scene::sides(domain);
   const double narrowest = *std::min_element(lengths.begin(), lengths.end());
   if (!domain.depth || (domain.periodic_y && domain.depth->periodic)) return narrowest / 2;
   double apart = domain.periodic_y ? INFINITY : domain.height();
@@ -284,7 +284,7 @@ Problem::Trial Problem::cheapest() const {
 }
 
 /// The densest fluid that the error leaves room for, and what it costs.
-Problem::Trial Problem::tried(const LatticeSize& nodes, double tau) const {
+Problem::Trial Problem::tried(const scene::LatticeSize& nodes, double tau) const {
   Trial trial{nodes, tau, 0, {}, {}};
   const double spacing = spacing_of(nodes);
   trial.error.resolution = resolution_error(spacing, most_viscous(tau));
@@ -295,10 +295,10 @@ Problem::Trial Problem::tried(const LatticeSize& nodes, double tau) const {
     if (of_stage.total() > trial.error.total()) trial.error = of_stage;
   }
   const bool sharp = coupling_ == MembraneCoupling::sharp;
-  trial.cost =
-      step_cost(fluid_nodes(with_lattice(scene_.domain, nodes)), membrane_nodes(spacing), scene_.numerics.precision,
-                scene_.domain.dimension(), {.sharp_kernel = sharp, .slip_correction = sharp}) /
-      time_step_of_factor_one(spacing, tau) * duration(trial.density_factors);
+  trial.cost = step_cost(scene::fluid_nodes(scene::with_lattice(scene_.domain, nodes)), membrane_nodes(spacing),
+                         scene_.numerics.precision, scene_.domain.dimension(),
+                         {.sharp_kernel = sharp, .slip_correction = sharp}) /
+               time_step_of_factor_one(spacing, tau) * duration(trial.density_factors);
   return trial;
 }
 
@@ -576,9 +576,9 @@ void put_draft_numerics(json::Document& document) {
     const Eigen::Vector2d size = fields.quantities("/domain/size", "m", scene::range::length);
     std::vector<double> lengths{size.x(), size.y()};
     if (in_space) lengths.push_back(fields.quantity("/domain/size/2", "m", scene::range::length));
-    const auto lattice = coarsest_lattice(lengths);
+    const auto lattice = scene::coarsest_lattice(lengths);
     if (!lattice) {
-      const std::string most = std::to_string(most_coarse_rows);
+      const std::string most = std::to_string(scene::most_coarse_rows);
       fields.refuse(
           "/domain/size",
           in_space ? "the ratios of these sides are not those of whole numbers up to " + most +
@@ -591,7 +591,7 @@ void put_draft_numerics(json::Document& document) {
     }
     // As fine as a lattice that might be chosen: a region of output must hold nodes.
     const int factor = std::max(1, 1024 / *std::max_element(lattice->begin(), lattice->end()));
-    document.put("/domain/nodes", refined(*lattice, factor).value(), origin);
+    document.put("/domain/nodes", scene::refined(*lattice, factor).value(), origin);
   }
   const Json types = root.value("cell_types", Json::object());
   for (const auto& [name, type] : types.items()) {

@@ -86,7 +86,7 @@ class OutlineChecker {
   /// `cells`: which of the scene's cells the membranes are; empty: all of them.
   OutlineChecker(const scene::Scene& scene, const core::Membranes& membranes, double spacing,
                  std::span<const int> cells = {})
-      : scene_(scene), membranes_(membranes), spacing_(spacing), cells_(cells), domain_(lattice_domain(scene)) {}
+      : scene_(scene), membranes_(membranes), spacing_(spacing), cells_(cells), domain_(scene::lattice_domain(scene)) {}
 
   void check() const {
     for (std::size_t i = 0; i < membranes_.cells.size(); ++i) check_fits(i);
@@ -171,7 +171,7 @@ class OutlineChecker {
 class SurfaceChecker {
  public:
   SurfaceChecker(const scene::Scene& scene, const core::Surfaces& surfaces, double spacing)
-      : scene_(scene), surfaces_(surfaces), spacing_(spacing), domain_(lattice_domain<3>(scene)) {
+      : scene_(scene), surfaces_(surfaces), spacing_(spacing), domain_(scene::lattice_domain<3>(scene)) {
     for (int c = 0; c < surfaces.cell_count(); ++c) {
       Eigen::AlignedBox3d& box = boxes_.emplace_back();
       for (int i = 0; i < surfaces.cells[c].count; ++i) box.extend(surfaces.nodes(c)[i]);
@@ -295,7 +295,7 @@ void require_distance(const scene::Scene& scene) {
 void try_in_strips(const scene::Scene& scene, double spacing, std::size_t of_strip) {
   require_room(scene);
   require_distance(scene);
-  const core::Domain<2> domain = lattice_domain(scene);
+  const core::Domain<2> domain = scene::lattice_domain(scene);
   const core::Membranes none = without_cells<2>(scene, spacing);
   double reach = 0;  // of any outline from its centre, spacings
   for (const auto& shape : none.types) {
@@ -360,7 +360,7 @@ template void for_each_cell<3>(const scene::Scene&, double,
 template <int D>
 Cells<D> make_known_cells(const scene::Scene& scene, const std::function<bool(int)>& known) {
   constexpr int at_once = 1 << 16;  // nodes whose memory is given back together
-  const double spacing = lattice_spacing(scene);
+  const double spacing = scene::lattice_spacing(scene);
   Cells<D> cells = room_for_cells<D>(scene, spacing);
   std::vector<Range> unknown;
   int nodes = 0;
@@ -383,7 +383,7 @@ void try_cells(const scene::Scene& scene, std::size_t of_strip) {
   if (scene.domain.depth) {
     make_cells<3>(scene);
   } else if (scene.cells.size() > of_strip) {
-    try_in_strips(scene, lattice_spacing(scene), of_strip);
+    try_in_strips(scene, scene::lattice_spacing(scene), of_strip);
   } else {
     make_cells<2>(scene);
   }

@@ -32,9 +32,9 @@ Cells<D> make_known_cells(const scene::Scene& scene, const std::function<bool(in
 template <int D>
 auto make_cells(const scene::Scene& scene) {
   if constexpr (D == 2) {
-    return make_membranes(scene, lattice_spacing(scene));
+    return make_membranes(scene, scene::lattice_spacing(scene));
   } else {
-    return make_surfaces(scene, lattice_spacing(scene));
+    return make_surfaces(scene, scene::lattice_spacing(scene));
   }
 }
 

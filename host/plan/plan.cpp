@@ -26,7 +26,7 @@ void check_models_of_stages(const scene::Scene& scene) {
 
 void check_developed_flows(const Plan& plan) {
   const scene::Domain& domain = plan.scene->domain;
-  for (const StageSetting& stage : plan.stages) {
+  for (const scene::StageSetting& stage : plan.stages) {
     if (stage.stage->start != scene::WallStart::developed || stage.largest_drive(domain) == 0) continue;
     const auto refuse = [&](const char* why) {
       throw Error(Cause::bad_input, plan.scene->place(stage.stage->pointer + "/start"), why);
@@ -43,7 +43,7 @@ void check_developed_flows(const Plan& plan) {
 /// A stage that ends by energy needs models that tell theirs.
 void check_equilibria(const Plan& plan) {
   const auto stage = std::find_if(plan.stages.begin(), plan.stages.end(),
-                                  [](const StageSetting& s) { return s.stage->until_equilibrium; });
+                                  [](const scene::StageSetting& s) { return s.stage->until_equilibrium; });
   if (stage == plan.stages.end()) return;
   const auto refuse = [&](const PlannedModel& model) {
     throw Error(Cause::bad_input, plan.scene->place(stage->stage->pointer + "/until"),
@@ -64,7 +64,7 @@ void check_equilibria(const Plan& plan) {
 
 /// Makes every active model once.
 void try_models(const Plan& plan) {
-  const plugin::ModelSetting setting = plan.stages.front().model_setting(plan.scene->fluid.inertia);
+  const plugin::ModelSetting setting = model_setting(plan.stages.front(), plan.scene->fluid.inertia);
   Faults faults;
   for (const PlannedModel* model : plan.active_models()) {
     try {
@@ -211,7 +211,7 @@ Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::o
         return scene.cell_types[cell.type].interior_viscosity != scene.fluid.viscosity;
       });
   for (int i = 0; i < static_cast<int>(scene.stages.size()); ++i) {
-    faults.attempt([&] { plan.stages.push_back(make_stage_setting(scene, i)); });
+    faults.attempt([&] { plan.stages.push_back(scene::make_stage_setting(scene, i)); });
   }
   faults.attempt([&] { require(demands_on_operator(plan), plan.collision, scene, catalog); });
   faults.attempt([&] { check_developed_flows(plan); });

@@ -9,10 +9,19 @@
 #include "numerics_auto.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/lock.hpp"
+#include "plugin/model_setup.hpp"
 #include "plugin/parameters.hpp"
-#include "stage_scales.hpp"
+#include "scene/lattice.hpp"
+#include "scene/stage_scales.hpp"
 
 namespace rouleau::plan {
+
+using scene::lattice_domain, scene::lattice_spacing, scene::StageSetting;
+
+/// What the models of a stage are told about the lattice.
+inline plugin::ModelSetting model_setting(const scene::StageSetting& stage, bool inertia) {
+  return {stage.units, 1 / stage.tau, inertia, stage.dimension};
+}
 
 /// A model the scene names, with its parameters. An inactive one is left out: its library is not opened.
 struct PlannedModel {
@@ -29,7 +38,7 @@ struct Plan {
   PlannedModel collision;
   std::vector<std::vector<PlannedModel>> membranes;  ///< for each cell type
   std::vector<PlannedModel> interactions;            ///< in the order of Scene::interactions
-  std::vector<StageSetting> stages;
+  std::vector<scene::StageSetting> stages;
   bool has_cells = false;
   bool viscosity_contrast = false;
   bool has_interactions = false;       ///< between cells

@@ -72,8 +72,8 @@ std::string why_it_attracts_nowhere(const PlannedModel& model) {
 
 std::vector<InteractionWell> describe_wells(const Plan& plan) {
   std::vector<InteractionWell> wells;
-  const StageSetting& stage = plan.stages.front();
-  const plugin::ModelSetting setting = stage.model_setting(plan.scene->fluid.inertia);
+  const scene::StageSetting& stage = plan.stages.front();
+  const plugin::ModelSetting setting = model_setting(stage, plan.scene->fluid.inertia);
   for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
     const PlannedModel& model = plan.interactions[i];
     if (!model.active() || !model.manifest->state.empty()) continue;  // what remembers has no one well
@@ -134,14 +134,14 @@ double shear_modulus(const Plan& plan) {
 }
 
 double stretching_modulus(const Plan& plan) {
-  const StageSetting& stage = plan.stages.front();
+  const scene::StageSetting& stage = plan.stages.front();
   double least = std::nan("");
   for (const std::vector<PlannedModel>& laws : plan.membranes) {
     double sum = 0;
     for (const PlannedModel& law : laws) {
       if (!law.active() || !law.manifest->gives_output("tension_by_stretch")) continue;
       sum += core::stretching_stiffness(plugin::make_membrane_law(*law.manifest, law.parameters.values,
-                                                                  stage.model_setting(plan.scene->fluid.inertia)),
+                                                                  model_setting(stage, plan.scene->fluid.inertia)),
                                         {1.0});
     }
     if (sum > 0 && !(sum >= least)) least = stage.units.to_si(sum, units::dimension::tension);

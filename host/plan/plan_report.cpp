@@ -8,8 +8,8 @@
 #include "cell_travel.hpp"
 #include "core/solver/schedule.hpp"
 #include "flow_start.hpp"
-#include "lattice_size.hpp"
 #include "scene/driving_flow.hpp"
+#include "scene/lattice.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
@@ -21,7 +21,7 @@ namespace {
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 /// A force on a fluid that is periodic along all axes meets no wall that could balance it.
-bool accelerates_for_ever(const StageSetting& stage, const scene::Scene& scene) {
+bool accelerates_for_ever(const scene::StageSetting& stage, const scene::Scene& scene) {
   return !scene::has_walls(scene.domain) && scene::driving_force(*stage.stage, scene) != Eigen::Vector3d::Zero();
 }
 
@@ -38,7 +38,7 @@ std::map<std::string, double> dimensionless_numbers(const Plan& plan, const std:
   const scene::Scene& scene = *plan.scene;
   double shear_rate = 0, factor = scene.numerics.density_factor, wall_mach = 0;
   bool unbounded = false;
-  for (const StageSetting& stage : plan.stages) {
+  for (const scene::StageSetting& stage : plan.stages) {
     wall_mach = std::max(wall_mach, units::mach_number(stage.fastest_wall()));
     unbounded = unbounded || accelerates_for_ever(stage, scene);
     const double rate = scene::mean_shear_rate(*stage.stage, scene);
@@ -73,7 +73,7 @@ std::vector<Conversion> conversion_table(const Plan& plan) {
   const units::Units units;
   const scene::Scene& scene = *plan.scene;
   std::vector<Conversion> table;
-  for (const StageSetting& stage : plan.stages) {
+  for (const scene::StageSetting& stage : plan.stages) {
     const units::LatticeUnits& u = stage.units;
     const auto row = [&](const std::string& quantity, double si, const std::string& unit, double lattice,
                          const std::string& of = {}) {
@@ -245,7 +245,7 @@ std::vector<Omission> omissions(const Plan& plan) {
   }
   if (!scene.fluid.inertia) {
     const bool follows = std::any_of(plan.stages.begin(), plan.stages.end(),
-                                     [&](const StageSetting& stage) { return follows_cells(scene, stage); });
+                                     [&](const scene::StageSetting& stage) { return follows_cells(scene, stage); });
     omit("convective inertia", std::string("fluid.inertia is false: linear (Stokes) equilibrium") +
                                    (follows ? ", its unsteady term in a frame that moves with the cells" : ""));
   }
@@ -278,7 +278,7 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
   add_those_of({plan.collision});
   for (const std::vector<PlannedModel>& laws : plan.membranes) add_those_of(laws);
   add_those_of(plan.interactions);
-  for (const StageSetting& stage : plan.stages) {
+  for (const scene::StageSetting& stage : plan.stages) {
     if (!accelerates_for_ever(stage, scene)) continue;
     const double factor = stage.stage->density_factor;
     const double acceleration = scene::driving_force(*stage.stage, scene).norm() / scene.fluid.density;
@@ -291,12 +291,12 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
                        ", for as long as the stage lasts; give domain.y walls, or leave out fluid.body_force and "
                        "pressure_gradient");
   }
-  if (const int ranks = fewest_ranks(scene.domain); ranks > 1) {
+  if (const int ranks = scene::fewest_ranks(scene.domain); ranks > 1) {
     warnings.push_back("the lattice has " + number(scene.domain.node_count(), 12) + " nodes and one rank can compute " +
                        std::to_string(scene::most_nodes_of_block) + "; start the run on " + std::to_string(ranks) +
                        " ranks or more (docs/ranks.md)");
   }
-  const double spacing = lattice_spacing(scene);
+  const double spacing = scene::lattice_spacing(scene);
   for (const scene::FluidLayer& layer : scene.fluid.layers) {
     for (const double border : {layer.from, layer.to}) {
       const double row = border / spacing, nearest = std::round(row);
@@ -354,7 +354,7 @@ std::vector<LateStart> late_starts(const Plan& plan) {
   constexpr double slight = 0.01;
   std::vector<LateStart> found;
   if (!plan.has_cells) return found;  // how the flow starts is what is computed
-  for (const StageSetting& stage : plan.stages) {
+  for (const scene::StageSetting& stage : plan.stages) {
     const double late = flow_start(*plan.scene, stage.index).delay;
     const double strain =
         static_cast<double>(stage.max_steps) * stage.units.time * scene::mean_shear_rate(*stage.stage, *plan.scene);

@@ -77,7 +77,7 @@ void write_output(std::ostringstream& out, const scene::Scene& scene, const Outp
         << "factor\n";
   const scene::FieldStorage& storage = scene.output.field_storage;
   if (scene.output.fields.never() || storage.whole()) return;
-  const double spacing = lattice_spacing(scene) * 1e6;
+  const double spacing = scene::lattice_spacing(scene) * 1e6;
   out << "  fields at";
   const auto write_axis = [&](const char* name, int first, int count) {
     out << name << formatted(units::coordinate(first, spacing)) << " um";

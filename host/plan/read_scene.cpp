@@ -53,7 +53,7 @@ NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
               : bounds.most_density_factor.try_emplace(stage, kept).first->second;
       most = std::min(most, kept);
     } else if (limit.remedied_by == RemediedBy::resolution) {
-      const double radius = shape::smallest_radius(*plan.scene) / lattice_spacing(*plan.scene);
+      const double radius = shape::smallest_radius(*plan.scene) / scene::lattice_spacing(*plan.scene);
       bounds.least_radius = std::max(bounds.least_radius, radius / limit.margin);
     }
   }

@@ -10,43 +10,16 @@
 namespace rouleau::plan {
 
 template <int D>
-core::Domain<D> lattice_domain(const scene::Scene& scene) {
-  const scene::Domain& domain = scene.domain;
-  if constexpr (D == 2) {
-    return {{domain.nodes[0], domain.nodes[1]}, {true, domain.periodic_y}};
-  } else {
-    return {{domain.nodes[0], domain.nodes[1], domain.depth->nodes}, {true, domain.periodic_y, domain.depth->periodic}};
-  }
-}
-template core::Domain<2> lattice_domain(const scene::Scene&);
-template core::Domain<3> lattice_domain(const scene::Scene&);
-
-std::shared_ptr<const core::SolidNodes<3>> solid_nodes(const scene::Scene& scene) {
-  if (!scene.domain.tube_radius) return nullptr;
-  return std::make_shared<const core::SolidNodes<3>>(
-      core::tube_nodes(lattice_domain<3>(scene).size, *scene.domain.tube_radius / lattice_spacing(scene)));
-}
-
-std::vector<core::Layer> lattice_layers(const scene::Scene& scene) {
-  std::vector<core::Layer> layers;
-  const double spacing = lattice_spacing(scene);
-  for (const scene::FluidLayer& layer : scene.fluid.layers) {
-    layers.push_back({layer.from / spacing, layer.to / spacing, layer.viscosity / scene.fluid.viscosity});
-  }
-  return layers;
-}
-
-template <int D>
 core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
   const scene::Scene& scene = *plan.scene;
-  const StageSetting& stage = plan.stages[index];
-  const plugin::ModelSetting setting = stage.model_setting(scene.fluid.inertia);
+  const scene::StageSetting& stage = plan.stages[index];
+  const plugin::ModelSetting setting = model_setting(stage, scene.fluid.inertia);
   const auto values = [](const PlannedModel& model) -> const std::vector<double>& { return model.parameters.values; };
 
   core::BasicSolverSetup<D> setup{
-      .domain = lattice_domain<D>(scene),
+      .domain = scene::lattice_domain<D>(scene),
       .tau = stage.tau,
-      .layers = lattice_layers(scene),
+      .layers = scene::lattice_layers(scene),
       .inertia = scene.fluid.inertia,
       .follow_cells = follows_cells(scene, stage),
       .walls = stage.walls,
@@ -68,11 +41,11 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
       .time_step = stage.stage->density_factor,  // proportional to it
       .tension_unit = stage.units.unit(units::dimension::tension)};
   if constexpr (D == 3) {
-    setup.solid = solid_nodes(scene);
-    setup.tube_radius = scene.domain.tube_radius.value_or(0) / lattice_spacing(scene);
+    setup.solid = scene::solid_nodes(scene);
+    setup.tube_radius = scene.domain.tube_radius.value_or(0) / scene::lattice_spacing(scene);
     // The mean over the tube's true section, when the solver goes by that over its nodes.
     if (setup.solid)
-      setup.mean_velocity *= scene.domain.content() / std::pow(lattice_spacing(scene), 3) /
+      setup.mean_velocity *= scene.domain.content() / std::pow(scene::lattice_spacing(scene), 3) /
                              static_cast<double>(setup.solid->fluid_count());
   }
   if (!plan.has_cells) return setup;

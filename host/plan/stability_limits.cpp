@@ -211,7 +211,7 @@ Stiffness membrane_stiffness(const Plan& plan, const plugin::ModelSetting& setti
 
 /// Relative change of the area of a cell whose membrane is stretched from the start: the tension T over the radius a is
 /// a pressure (twice that of a sphere), and density deviates by three times the pressure. 0 without prestretch.
-double prestress_compression(const Plan& plan, const StageSetting& stage) {
+double prestress_compression(const Plan& plan, const scene::StageSetting& stage) {
   double most = 0;
   for (std::size_t type = 0; type < plan.membranes.size(); ++type) {
     const scene::Shape& shape = plan.scene->cell_types[type].shape;
@@ -224,7 +224,7 @@ double prestress_compression(const Plan& plan, const StageSetting& stage) {
     for (const PlannedModel& law : plan.membranes[type]) {
       if (!law.active()) continue;
       const core::MembraneLaw instance = plugin::make_membrane_law(*law.manifest, law.parameters.values,
-                                                                   stage.model_setting(plan.scene->fluid.inertia));
+                                                                   model_setting(stage, plan.scene->fluid.inertia));
       tension += core::tension_at(instance, prestretch);
     }
     most = std::max(most, 3 * std::abs(tension) * (sphere != nullptr ? 2 : 1) * stage.units.length / radius);
@@ -242,8 +242,8 @@ bool reports_moments(const Plan& plan) {
 }
 
 /// Of a cell type's membrane, Es/(mu a), 1/s: Es is a third of the stretching stiffness, as of a neo-Hookean one.
-double recovery_rate(const Plan& plan, const StageSetting& stage, std::size_t type) {
-  const plugin::ModelSetting setting = stage.model_setting(plan.scene->fluid.inertia);
+double recovery_rate(const Plan& plan, const scene::StageSetting& stage, std::size_t type) {
+  const plugin::ModelSetting setting = model_setting(stage, plan.scene->fluid.inertia);
   double stiffness = 0;
   for (const PlannedModel& law : plan.membranes[type]) {
     if (law.active())
@@ -255,7 +255,7 @@ double recovery_rate(const Plan& plan, const StageSetting& stage, std::size_t ty
 }
 
 /// Strain within which the cell type that takes longest comes to its steady shape.
-double slowest_relaxation(const Plan& plan, const StageSetting& stage) {
+double slowest_relaxation(const Plan& plan, const scene::StageSetting& stage) {
   double slowest = 0;
   for (std::size_t t = 0; t < plan.membranes.size(); ++t) {
     const double capillary = scene::mean_shear_rate(*stage.stage, *plan.scene) / recovery_rate(plan, stage, t);
@@ -266,13 +266,13 @@ double slowest_relaxation(const Plan& plan, const StageSetting& stage) {
 }
 
 /// Of the developed flow between walls at rest, lattice units.
-double fastest_driven_speed(const StageSetting& stage, const scene::Scene& scene) {
+double fastest_driven_speed(const scene::StageSetting& stage, const scene::Scene& scene) {
   const double height = scene::wall_distance(scene.domain) / stage.units.length;
   const double viscosity = core::viscosity_of(scene.numerics.tau), drive = stage.largest_drive(scene.domain);
   if (scene.domain.tube_radius) return drive * height * height / (16 * viscosity);
   if (scene.fluid.layers.empty() || scene.domain.periodic_y) return drive * height * height / (8 * viscosity);
   double fastest = 0;
-  const std::vector<double> rows = core::viscosity_of_rows(lattice_layers(scene), scene.domain.nodes[1]);
+  const std::vector<double> rows = core::viscosity_of_rows(scene::lattice_layers(scene), scene.domain.nodes[1]);
   for (const core::ProfilePoint& point : core::layered_profile(rows, viscosity, {}, drive))
     fastest = std::max(fastest, std::abs(point.velocity));
   return fastest;
@@ -281,7 +281,7 @@ double fastest_driven_speed(const StageSetting& stage, const scene::Scene& scene
 /// Volume that leaks out of a cell while the flow strains by 1, over its volume, in three dimensions: second order in the spacing
 /// (docs/stability.md, "What leaks").
 double leak_of_strain(const scene::Scene& scene) {
-  const double radius = shape::smallest_radius(scene) / lattice_spacing(scene);
+  const double radius = shape::smallest_radius(scene) / scene::lattice_spacing(scene);
   return (scene.cells.size() > 1 ? leak_of_many : leak_of_one) / (radius * radius);
 }
 
@@ -297,7 +297,7 @@ double stretching_gain_of(const Plan& plan) {
 
 /// Relative change of the area of a cell at a wall: a force across walls is held by a pressure, force times half of the
 /// distance from wall to wall.
-double compression_by_held_force(const StageSetting& stage, const scene::Scene& scene) {
+double compression_by_held_force(const scene::StageSetting& stage, const scene::Scene& scene) {
   const Eigen::Vector3d force(0, stage.body_force_y, stage.body_force_z);
   const Eigen::Vector3d held = force - scene::unheld(force, scene.domain);
   const double height = scene.domain.height(), depth = scene.domain.is_duct() ? scene.domain.depth->size : 0;
@@ -359,8 +359,8 @@ bool semi_implicit_gains(const Plan& plan) {
 double explicit_margin(const Plan& plan) {
   double margin = std::numeric_limits<double>::infinity();
   if (!plan.has_cells) return margin;
-  for (const StageSetting& stage : plan.stages) {
-    const Stiffness nearest = membrane_stiffness(plan, stage.model_setting(plan.scene->fluid.inertia));
+  for (const scene::StageSetting& stage : plan.stages) {
+    const Stiffness nearest = membrane_stiffness(plan, model_setting(stage, plan.scene->fluid.inertia));
     margin = std::min({margin, nearest.stretching.margin(), nearest.bending.margin()});
   }
   return margin;
@@ -404,7 +404,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
         "raise numerics.tau: the semi-implicit step gains nothing at low viscosity");
   }
 
-  for (const StageSetting& stage : plan.stages) {
+  for (const scene::StageSetting& stage : plan.stages) {
     const std::string where = " (stage " + stage.stage->name + ")";
     const std::string lower = "lower " + stage.stage->density_factor_key;
     stage_index = stage.index;
@@ -412,7 +412,7 @@ std::vector<Limit> find_limits(const Plan& plan) {
     const bool chosen = plan.numerics_choice && plan.numerics_choice->has(stage.stage->density_factor_key);
     const RemediedBy density =
         stage.stage->has_own_density_factor() && !chosen ? RemediedBy::nothing : RemediedBy::density_factor;
-    const plugin::ModelSetting setting = stage.model_setting(scene.fluid.inertia);
+    const plugin::ModelSetting setting = model_setting(stage, scene.fluid.inertia);
     if (stage.fastest_wall() != 0) {
       const std::string what = stage.stage->mean_wall_speed != 0 ? "the walls' speeds" : "shear_rate";
       add("Mach number of the walls" + where, units::mach_number(stage.fastest_wall()),

@@ -42,11 +42,11 @@ double gap_between(const core::Surfaces& cells, const core::Domain<3>& domain) {
 template <int D>
 void measure(const scene::Scene& scene, StartGaps& gaps) {
   const Cells<D> cells = make_known_cells<D>(scene, [](int) { return true; });
-  const core::Domain<D> domain = lattice_domain<D>(scene);
+  const core::Domain<D> domain = scene::lattice_domain<D>(scene);
   gaps.cells = std::min(gaps.cells, gap_between(cells, domain));
   if constexpr (D == 3) {
     if (scene.domain.tube_radius) {
-      const double radius = *scene.domain.tube_radius / lattice_spacing(scene);
+      const double radius = *scene.domain.tube_radius / scene::lattice_spacing(scene);
       for (int cell = 0; cell < cells.cell_count(); ++cell)
         gaps.tube = std::min(gaps.tube, radius - core::farthest_from_axis(cells, cell, domain));
       return;
@@ -70,7 +70,7 @@ StartGaps start_gaps(const scene::Scene& scene) {
   for (auto packing = scene.packings.rbegin(); packing != scene.packings.rend(); ++packing) {
     const auto first = placed.cells.begin() + packing->first;
     placed.cells.erase(first, first + packing->count);
-    const double gap = packing->gap / lattice_spacing(scene);
+    const double gap = packing->gap / scene::lattice_spacing(scene);
     if (scene.domain.tube_radius) gaps.tube = std::min(gaps.tube, gap);
     if (!(gap < least_gap_at_start)) continue;
     gaps.cells = std::min(gaps.cells, gap);

@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "json/document.hpp"
 #include "plan/read_scene.hpp"
-#include "plan/stage_scales.hpp"
+#include "scene/stage_scales.hpp"
 #include "units/units.hpp"
 
 namespace rouleau::stability {
@@ -37,7 +37,7 @@ double lattice_factor(const scene::Scene& scene, const LimitsParameter& paramete
   double factor = NAN;
   for (int stage = 0; stage < static_cast<int>(scene.stages.size()); ++stage) {
     const double one =
-        units::Units().scale(parameter.unit) / plan::make_stage_setting(scene, stage).units.to_si(1, dimension);
+        units::Units().scale(parameter.unit) / scene::make_stage_setting(scene, stage).units.to_si(1, dimension);
     factor = std::isnan(factor) ? one : largest ? std::max(factor, one) : std::min(factor, one);
   }
   return factor;

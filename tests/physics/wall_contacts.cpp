@@ -201,7 +201,7 @@ TEST_CASE("the walls' shear stress is that of the flow and of the cell's particl
             R"(/stages=[{"name": "shear", "shear_rate": "20 1/s", "strain": 10, "start": "developed"}])"}));
   bench.start();
   bench.solver->start();
-  const StageSetting& stage = bench.plan.stages[0];
+  const scene::StageSetting& stage = bench.plan.stages[0];
   bench.step(std::lround(8 / stage.shear_rate));
   const auto look = [&] {
     bench.forces();

@@ -9,9 +9,9 @@
 #include "core/membrane/membranes.hpp"
 #include "core/membrane/rounding.hpp"
 #include "plan/estimate.hpp"
-#include "plan/lattice_size.hpp"
 #include "plan/placed_cells.hpp"
 #include "plan/solver_setup.hpp"
+#include "scene/lattice.hpp"
 #include "scene/scene_reader.hpp"
 
 namespace rouleau::plan {
@@ -66,10 +66,10 @@ class Points {
 template <int D>
 core::Decomposition<D> cut(const Plan& plan, int ranks) {
   const scene::Scene& scene = *plan.scene;
-  const core::Domain<D> domain = lattice_domain<D>(scene);
+  const core::Domain<D> domain = scene::lattice_domain<D>(scene);
   Points<D> points(domain, membrane_nodes(scene));
   if (plan.has_cells) {
-    for_each_cell<D>(scene, lattice_spacing(scene), [&](std::size_t, const auto& cell) { points.add(cell); });
+    for_each_cell<D>(scene, scene::lattice_spacing(scene), [&](std::size_t, const auto& cell) { points.add(cell); });
   }
   return core::Decomposition<D>::bisected(domain, ranks, points.all(), points.cost(plan));
 }
@@ -94,7 +94,7 @@ void require_computable(const scene::Scene& scene, const Blocks* blocks) {
   };
   if (blocks != nullptr) std::visit(look, *blocks);
   if (most <= static_cast<double>(scene::most_nodes_of_block)) return;
-  const int enough = std::max(fewest_ranks(scene.domain), ranks + 1);
+  const int enough = std::max(scene::fewest_ranks(scene.domain), ranks + 1);
   throw Error(Cause::bad_input, scene.place("/domain/nodes"),
               number(most, 12) + (ranks > 1 ? " nodes of a block" : " nodes") + " are more than the " +
                   std::to_string(scene::most_nodes_of_block) + " that one rank can compute",
@@ -121,7 +121,7 @@ template <int D>
 core::Decomposition<D> cut_again(const Plan& plan, const core::Ranks<D>& ranks, const core::CellNodes& cells,
                                  const std::vector<double>& seconds) {
   const core::Decomposition<D>& blocks = *ranks.blocks;
-  const core::Domain<D> domain = lattice_domain<D>(*plan.scene);
+  const core::Domain<D> domain = scene::lattice_domain<D>(*plan.scene);
   Points<D> points(domain, cells.node_count());
   points.add(cells);
   points.share(ranks);

@@ -122,7 +122,7 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
   std::vector<int> owner, nodes;
   Pairs known;        // cells, and ranks that are told where they are
   Pairs spread, act;  // ranks that speak of forces and velocities, and of reactions
-  for_each_cell<D>(*plan.scene, lattice_spacing(*plan.scene), [&](std::size_t c, const Cells<D>& cell) {
+  for_each_cell<D>(*plan.scene, scene::lattice_spacing(*plan.scene), [&](std::size_t c, const Cells<D>& cell) {
     const core::BoundingBox<D> box = core::box_of<D>(cell, 0);
     const int rank = Ghosts::owner_by_place(box, blocks);
     RankCost& own = ranks[rank];

@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "blocks.hpp"
-#include "plan/lattice_size.hpp"
+#include "scene/lattice.hpp"
 #include "units/units.hpp"
 
 namespace rouleau::plan {
@@ -110,7 +110,7 @@ RankTimes rank_times(const Plan& plan, const std::vector<RankCost>& asked, const
   steps[wanted] = step_time(asked, machines, scale);
   const int factor = plan.scene->cells.size() > many_cells ? 8 : 2;
   for (int ranks = factor; ranks <= std::min(most, largest_machine); ranks *= factor) {
-    if (ranks < fewest_ranks(plan.scene->domain)) continue;
+    if (ranks < scene::fewest_ranks(plan.scene->domain)) continue;
     if (ranks != wanted) steps[ranks] = step_time(rank_costs(plan, make_blocks(plan, ranks)), machines, scale);
     if (steps[ranks] > slower * least || steps[1] < wasteful * ranks * steps[ranks]) break;
     least = std::min(least, steps[ranks]);

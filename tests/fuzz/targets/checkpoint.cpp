@@ -18,7 +18,7 @@ struct Run {
   Run()
       : scene(plan::read_scene(ROULEAU_FUZZ_SCENES "/checkpoint.json")),
         plan(plan::make_plan(scene, fuzz::shipped_catalog())) {}
-  [[nodiscard]] core::Membranes membranes() const { return plan::make_membranes(scene, plan::lattice_spacing(scene)); }
+  [[nodiscard]] core::Membranes membranes() const { return plan::make_membranes(scene, scene::lattice_spacing(scene)); }
 
   scene::Scene scene;
   plan::Plan plan;
@@ -49,7 +49,7 @@ void resume(const std::filesystem::path& directory) {
   auto resumption = run::open_checkpoint(directory, run.plan, true);
   core::Membranes membranes = run.membranes();
   run::RunState state{observe::Observer(run.scene, membranes)};
-  const core::Box<2> whole = plan::lattice_domain(run.scene).block;
+  const core::Box<2> whole = scene::lattice_domain(run.scene).block;
   auto restored = run::restore<double>(std::move(resumption.checkpoint), run.plan, whole, state, membranes);
   core::Solver<double> solver(plan::make_solver_setup(run.plan, state.stage), membranes);
   solver.start(std::move(restored.solver));

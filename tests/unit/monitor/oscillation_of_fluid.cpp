@@ -23,7 +23,7 @@ void check(const std::string& file, const std::vector<std::string>& overrides) {
   constexpr int D = Set::dimension;
   const scene::Scene scene = plan::read_scene(file, overrides);
   const plan::Plan plan = plan::make_plan(scene, catalog());
-  const Domain<D> domain = plan::lattice_domain<D>(scene);
+  const Domain<D> domain = scene::lattice_domain<D>(scene);
   const auto state = [](int x, int y, int z) {
     typename Fluid<double, Set>::State of_node{noise(x, y, z, 0), {}, {}};
     for (int k = 0; k < D; ++k) of_node.velocity[k] = noise(x, y, z, 1 + k);

@@ -191,7 +191,7 @@ TEST_CASE("an aggregate is a connected chain of contacts, labelled by its smalle
 }
 
 TEST_CASE("an output is due at the steps nearest to multiples of its interval") {
-  StageSetting setting{};
+  scene::StageSetting setting{};
   setting.shear_rate = 0.003;
   setting.units = {1e-7, 1e-5, 1};
   setting.max_steps = 100000;
@@ -207,7 +207,7 @@ TEST_CASE("an output is due at the steps nearest to multiples of its interval") 
 }
 
 TEST_CASE("a stage at rest writes forty rows where only a strain is asked for") {
-  StageSetting setting{};
+  scene::StageSetting setting{};
   setting.units = {1e-7, 1e-5, 1};
   setting.max_steps = 4000;
   const OutputSchedule schedule({0.25, std::nullopt}, setting, true);

@@ -109,7 +109,7 @@ template <class T, class Set>
 void check(const Flow& flow) {
   constexpr int D = Set::dimension;
   Planned<T, Set> planned(flow);
-  const core::Domain<D> domain = plan::lattice_domain<D>(planned.scene);
+  const core::Domain<D> domain = scene::lattice_domain<D>(planned.scene);
   for (const bool part : {false, true}) {
     CAPTURE(flow.what, part);
     scene::FieldStorage& storage = planned.scene.output.field_storage;

@@ -252,7 +252,7 @@ TEST_CASE("several cells in three dimensions want the slip correction") {
 
 TEST_CASE("strain of an oscillating stage is the integral of the shear rate's magnitude") {
   const double base = GENERATE(0.0, 0.3, -0.3, 1.7, -1.7), amplitude = GENERATE(1.0, -1.0);
-  StageSetting setting{};
+  scene::StageSetting setting{};
   setting.shear_rate = base;
   setting.oscillating_rate = amplitude;
   setting.oscillation.frequency = 1.0 / 1000;

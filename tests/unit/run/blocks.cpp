@@ -139,7 +139,7 @@ void run_cut(const Planned& planned, const Cut<D>& cut, const run::RunOptions& o
 
 template <int D>
 std::vector<Cut<D>> cuts_of(const Planned& planned) {
-  return test::cuts_of(plan::lattice_domain<D>(planned.scene), static_cast<int>(planned.scene.cells.size()));
+  return test::cuts_of(scene::lattice_domain<D>(planned.scene), static_cast<int>(planned.scene.cells.size()));
 }
 
 /// Into any blocks, and then on from the checkpoint of some in others.
@@ -224,7 +224,7 @@ TEST_CASE("a run whose ranks get other blocks on the way writes the same directo
   cases.push_back(two_stages);
   cases.push_back({"no cells", four_cells, {driven, "/output={}", "/cells=[]", "/interactions=[]"}});
   for (const Case& c : cases) {
-    const core::Domain<2> domain = plan::lattice_domain<2>(Planned(c).scene);
+    const core::Domain<2> domain = scene::lattice_domain<2>(Planned(c).scene);
     const auto [nx, ny] = domain.size;
     const core::Box<2> strip{{0, 0}, {nx / 5, ny}}, floor{{nx / 5, 0}, {nx, 3}}, rest{{nx / 5, 3}, {nx, ny}};
     compare_cut_again<2>(c, {"uneven", Decomposition<2>(domain, {strip, floor, rest}), {}, 1}, block_steps(70));
@@ -233,7 +233,7 @@ TEST_CASE("a run whose ranks get other blocks on the way writes the same directo
 
 TEST_CASE("a run in three dimensions whose ranks get other blocks on the way writes the same directory") {
   const Case c = scenes_in_space().front();
-  const core::Domain<3> domain = plan::lattice_domain<3>(Planned(c).scene);
+  const core::Domain<3> domain = scene::lattice_domain<3>(Planned(c).scene);
   compare_cut_again<3>(c, {"even", Decomposition<3>::even(domain, {1, 3, 1}), {}, 2}, block_steps(40));
 }
 

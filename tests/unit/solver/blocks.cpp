@@ -147,7 +147,7 @@ End<T, Set> simulate(const Planned<Set::dimension>& planned, const Domain<Set::d
   }
   REQUIRE_FALSE(solver.escaped());
   observe::Observer observer(planned.scene, planned.cells);
-  const plan::StageSetting& setting = planned.plan.stages.front();
+  const scene::StageSetting& setting = planned.plan.stages.front();
   solver.compute_forces();
   const auto observed = numbers(observer.observe(solver, setting, end.cells, false));
   if (const auto failure = monitor::check_state(observer, solver, setting, end.cells, planned.plan))

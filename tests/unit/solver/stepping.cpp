@@ -14,7 +14,7 @@ using namespace rouleau::scene;
 using namespace rouleau::core;
 
 TEST_CASE("the next step of a schedule is the first one that is due") {
-  StageSetting setting{};
+  scene::StageSetting setting{};
   setting.units.time = 1;
   setting.shear_rate = 1;
   setting.max_steps = 1000;
@@ -32,7 +32,7 @@ TEST_CASE("the next step of a schedule is the first one that is due") {
 }
 
 TEST_CASE("a schedule without an interval is never due again") {
-  StageSetting setting{};
+  scene::StageSetting setting{};
   setting.max_steps = 1000;
   CHECK(OutputSchedule(Cadence{}, setting, true).next(0) == std::numeric_limits<long>::max());
 }

@@ -159,7 +159,7 @@ template <class Set>
 Means means_of(const Case& c, double strain) {
   Bench<double, Set> bench(c);
   bench.start();
-  const plan::StageSetting& stage = bench.plan.stages.front();
+  const scene::StageSetting& stage = bench.plan.stages.front();
   const long steps = std::lround(strain / std::abs(stage.shear_rate)), looks = 40;
   const double unit = bench.solver->setup().viscosity() * stage.shear_rate;
   bench.solver->step(steps / 2);

@@ -5,15 +5,15 @@
 #include <cmath>
 
 #include "core/fluid/oscillation.hpp"
-#include "plugin/model.hpp"
-#include "scene/driving_flow.hpp"
-#include "scene/scene.hpp"
+#include "driving_flow.hpp"
+#include "lattice.hpp"
+#include "scene.hpp"
 #include "units/lattice_units.hpp"
 
-namespace rouleau::plan {
+namespace rouleau::scene {
 
 struct StageSetting {
-  const scene::Stage* stage;
+  const Stage* stage;
   int index;
   units::LatticeUnits units;
   double tau;
@@ -26,7 +26,6 @@ struct StageSetting {
   long max_steps;                     ///< of duration or strain, whichever is shorter
   int dimension;
 
-  [[nodiscard]] plugin::ModelSetting model_setting(bool inertia) const { return {units, 1 / tau, inertia, dimension}; }
   /// Walls or a force put energy in.
   [[nodiscard]] bool is_driven() const {
     return fastest_wall() != 0 || largest_body_force_x() != 0 || body_force_y != 0 || body_force_z != 0;
@@ -40,8 +39,8 @@ struct StageSetting {
     return std::abs(body_force_x) + std::abs(oscillation.body_force_x);
   }
   /// Largest force that drives a flow, along any axis: what no wall takes; lattice.
-  [[nodiscard]] double largest_drive(const scene::Domain& domain) const {
-    return scene::driving_part({largest_body_force_x(), body_force_y, body_force_z}, domain);
+  [[nodiscard]] double largest_drive(const Domain& domain) const {
+    return driving_part({largest_body_force_x(), body_force_y, body_force_z}, domain);
   }
   /// Strain after so many steps of the stage: the shear rate's magnitude, over time.
   [[nodiscard]] double strain_after(long steps) const;
@@ -49,10 +48,7 @@ struct StageSetting {
   [[nodiscard]] double steps_of(double seconds) const { return seconds / units.time; }
 };
 
-/// Spacing of the lattice, m.
-double lattice_spacing(const scene::Scene& scene);
-
 /// Conversions of stage `index`: with density rho f (f the density factor) as unit, dt = (tau - 1/2)/3 dx^2 rho f / mu.
-StageSetting make_stage_setting(const scene::Scene& scene, int index);
+StageSetting make_stage_setting(const Scene& scene, int index);
 
-}  // namespace rouleau::plan
+}  // namespace rouleau::scene

@@ -10,7 +10,7 @@
 #include "base/text.hpp"
 #include "core/fluid/relaxation.hpp"
 
-namespace rouleau::plan {
+namespace rouleau::scene {
 
 namespace {
 
@@ -47,10 +47,8 @@ double StageSetting::strain_after(long steps) const {
   return integral_of_magnitude(shear_rate, oscillating_rate, omega * time) / omega;
 }
 
-double lattice_spacing(const scene::Scene& scene) { return scene.domain.size.x() / scene.domain.nodes[0]; }
-
-StageSetting make_stage_setting(const scene::Scene& scene, int index) {
-  const scene::Stage& stage = scene.stages[index];
+StageSetting make_stage_setting(const Scene& scene, int index) {
+  const Stage& stage = scene.stages[index];
   const double spacing = lattice_spacing(scene);
   const double density = scene.fluid.density * stage.density_factor;
   const double tau = scene.numerics.tau;
@@ -66,14 +64,14 @@ StageSetting make_stage_setting(const scene::Scene& scene, int index) {
   const double mean = setting.units.to_lattice(stage.mean_wall_speed, units::dimension::velocity);
   const double apart = setting.shear_rate * scene.domain.nodes[1] / 2;
   setting.walls = {-(apart - mean), apart + mean};
-  const Eigen::Vector3d force = scene::driving_force(stage, scene);
+  const Eigen::Vector3d force = driving_force(stage, scene);
   setting.body_force_x = setting.units.to_lattice(force.x(), units::dimension::force_density);
   setting.body_force_y = setting.units.to_lattice(force.y(), units::dimension::force_density);
   setting.body_force_z = setting.units.to_lattice(force.z(), units::dimension::force_density);
   setting.dimension = scene.domain.dimension();
 
   if (stage.oscillates()) {
-    const scene::Oscillation& added = stage.oscillation;
+    const Oscillation& added = stage.oscillation;
     const double together = setting.units.to_lattice(added.mean_wall_speed, units::dimension::velocity);
     setting.oscillating_rate = setting.units.to_lattice(added.shear_rate, units::dimension::rate);
     const double against = setting.oscillating_rate * scene.domain.nodes[1] / 2;
@@ -98,4 +96,4 @@ StageSetting make_stage_setting(const scene::Scene& scene, int index) {
   return setting;
 }
 
-}  // namespace rouleau::plan
+}  // namespace rouleau::scene

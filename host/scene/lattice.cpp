@@ -1,0 +1,90 @@
+#include "lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene_reader.hpp"
+
+namespace rouleau::scene {
+
+double lattice_spacing(const Scene& scene) { return scene.domain.size.x() / scene.domain.nodes[0]; }
+
+template <int D>
+core::Domain<D> lattice_domain(const Scene& scene) {
+  const Domain& domain = scene.domain;
+  if constexpr (D == 2) {
+    return {{domain.nodes[0], domain.nodes[1]}, {true, domain.periodic_y}};
+  } else {
+    return {{domain.nodes[0], domain.nodes[1], domain.depth->nodes}, {true, domain.periodic_y, domain.depth->periodic}};
+  }
+}
+template core::Domain<2> lattice_domain(const Scene&);
+template core::Domain<3> lattice_domain(const Scene&);
+
+std::shared_ptr<const core::SolidNodes<3>> solid_nodes(const Scene& scene) {
+  if (!scene.domain.tube_radius) return nullptr;
+  return std::make_shared<const core::SolidNodes<3>>(
+      core::tube_nodes(lattice_domain<3>(scene).size, *scene.domain.tube_radius / lattice_spacing(scene)));
+}
+
+std::vector<core::Layer> lattice_layers(const Scene& scene) {
+  std::vector<core::Layer> layers;
+  const double spacing = lattice_spacing(scene);
+  for (const FluidLayer& layer : scene.fluid.layers) {
+    layers.push_back({layer.from / spacing, layer.to / spacing, layer.viscosity / scene.fluid.viscosity});
+  }
+  return layers;
+}
+
+LatticeSize lattice_size(const Domain& domain) {
+  LatticeSize size{domain.nodes[0], domain.nodes[1]};
+  if (domain.depth) size.push_back(domain.depth->nodes);
+  return size;
+}
+
+std::vector<double> sides(const Domain& domain) {
+  std::vector<double> lengths{domain.size.x(), domain.size.y()};
+  if (domain.depth) lengths.push_back(domain.depth->size);
+  return lengths;
+}
+
+Domain with_lattice(Domain domain, const LatticeSize& nodes) {
+  domain.nodes = {nodes[0], nodes[1]};
+  if (domain.depth) domain.depth->nodes = nodes[2];
+  return domain;
+}
+
+double fluid_nodes(const Domain& domain) {
+  if (!domain.tube_radius) return domain.node_count();
+  return domain.node_count() * domain.content() / (domain.size.prod() * domain.depth->size);
+}
+
+std::optional<LatticeSize> coarsest_lattice(const std::vector<double>& sides) {
+  constexpr double tolerance = 1e-9;
+  for (int rows = 4; rows <= most_coarse_rows; ++rows) {
+    LatticeSize found;
+    for (const double side : sides) {
+      const double nodes = rows * side / sides[1];
+      if (nodes > 3.5 && nodes < most_nodes_of_side + 0.5 && std::abs(nodes - std::round(nodes)) < tolerance * nodes)
+        found.push_back(static_cast<int>(std::lround(nodes)));
+    }
+    if (found.size() == sides.size()) return refined(found, 1);
+  }
+  return {};
+}
+
+std::optional<LatticeSize> refined(LatticeSize nodes, int factor) {
+  double all = 1;
+  for (int& of_side : nodes) {
+    if (of_side > most_nodes_of_side / factor) return {};
+    all *= of_side *= factor;
+  }
+  if (all > static_cast<double>(most_nodes_of_block)) return {};
+  return nodes;
+}
+
+int fewest_ranks(const Domain& domain) {
+  return static_cast<int>(std::ceil(domain.node_count() / static_cast<double>(most_nodes_of_block)));
+}
+
+}  // namespace rouleau::scene

@@ -1,0 +1,50 @@
+// The lattice of a scene: its nodes along the sides of the domain, its spacing, and its box as core has it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/domain/domain.hpp"
+#include "core/fluid/layers.hpp"
+#include "core/fluid/solid_nodes.hpp"
+#include "scene.hpp"
+
+namespace rouleau::scene {
+
+/// Numbers of nodes along each side: two, or three.
+using LatticeSize = std::vector<int>;
+
+/// Spacing of the lattice, m.
+double lattice_spacing(const Scene& scene);
+
+/// The lattice of a scene of D dimensions, in one block; with D = 2, of one of three, its section across z.
+template <int D = 2>
+core::Domain<D> lattice_domain(const Scene& scene);
+
+/// Its nodes in the walls of a tube; null: it is none.
+std::shared_ptr<const core::SolidNodes<3>> solid_nodes(const Scene& scene);
+
+/// Its layers of other viscosities.
+std::vector<core::Layer> lattice_layers(const Scene& scene);
+
+LatticeSize lattice_size(const Domain& domain);
+/// Lengths of the sides, m: two, or three.
+std::vector<double> sides(const Domain& domain);
+/// The domain with this lattice.
+Domain with_lattice(Domain domain, const LatticeSize& nodes);
+
+/// Nodes whose fluid is computed: those in a tube, or all.
+double fluid_nodes(const Domain& domain);
+
+inline constexpr int most_coarse_rows = 4096;
+/// The coarsest lattice with the same spacing along all sides, at least four nodes each; none where their ratios are not those of
+/// whole numbers, up to most_coarse_rows along y, or where it would have more nodes than can be computed.
+std::optional<LatticeSize> coarsest_lattice(const std::vector<double>& sides);
+/// A lattice with so many times as many nodes along each side; none where that are more than can be computed.
+std::optional<LatticeSize> refined(LatticeSize nodes, int factor);
+
+/// That can compute a lattice.
+int fewest_ranks(const Domain& domain);
+
+}  // namespace rouleau::scene
