@@ -1,6 +1,7 @@
 // The commands of the program; each is one file of this folder.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,5 +21,8 @@ int study_command(const std::vector<std::string>& arguments);
 int limits_command(const std::vector<std::string>& arguments);
 int verify_command(const std::vector<std::string>& arguments);
 int report_command(const std::vector<std::string>& arguments);
+
+/// The program that checks plugins. Throws Error(input_output) where it was not built.
+std::filesystem::path conform_program();
 
 }  // namespace rouleau::command

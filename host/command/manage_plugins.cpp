@@ -9,9 +9,10 @@
 #include <iostream>
 #include <string>
 
+#include "base/process.hpp"
 #include "base/text.hpp"
 #include "command/process/command_line.hpp"
-#include "conform/conformance.hpp"
+#include "commands.hpp"
 #include "files/file.hpp"
 #include "plugin/collection.hpp"
 #include "plugin/library.hpp"
@@ -36,17 +37,14 @@ std::vector<plugin::Manifest> plugins_in(const fs::path& folder) {
 }
 
 void require_conformance(const std::vector<plugin::Manifest>& manifests) {
-  std::vector<fs::path> files;
-  files.reserve(manifests.size());
-  for (const plugin::Manifest& manifest : manifests) files.push_back(manifest.file);
-  conform::ConformanceOptions options;
-  options.levels = {conform::Level::interface};
-  const auto silent = [](const conform::Conformance&, const conform::CheckResult&) {};
-  for (const conform::Conformance& plugin : conform::check_conformance(files, options, silent)) {
-    if (plugin.conforms()) continue;
-    throw Error(Cause::plugin_refused, Place{plugin.file.string()},
-                "the plugin does not keep to the interface, and is not installed\n  rouleau conform " +
-                    in_shell(plugin.file.string()) + " --level interface says where");
+  constexpr double longest_s = 3600;  // each check has a time limit of its own
+  for (const plugin::Manifest& manifest : manifests) {
+    const std::string file = manifest.file.string();
+    const ProcessEnd end = run_process(conform_program(), {fs::absolute(file), "--level", "interface"}, longest_s);
+    if (end.exit_code == exit_code::done && end.signal == 0 && !end.timed_out) continue;
+    throw Error(Cause::plugin_refused, Place{file},
+                "the plugin does not keep to the interface, and is not installed\n  rouleau conform " + in_shell(file) +
+                    " --level interface says where");
   }
 }
 

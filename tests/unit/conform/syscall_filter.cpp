@@ -1,5 +1,5 @@
 // The filter of system calls: code that may call, wherever it lies, and all other code.
-#include "conform/syscall_filter.hpp"
+#include "conform/isolation/syscall_filter.hpp"
 
 #include <linux/seccomp.h>
 #include <sys/mman.h>

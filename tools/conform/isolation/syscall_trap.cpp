@@ -19,7 +19,7 @@
 
 #include "base/foreign_call.hpp"
 #include "base/process.hpp"
-#include "report_line.hpp"
+#include "conform/report_line.hpp"
 #include "syscall_filter.hpp"
 
 namespace rouleau::conform {

@@ -18,8 +18,8 @@ enum class Undeclared { null, unreadable, signalling_nan };
 /// behind the block's struct and its lists of pointers.
 enum class Guard { none, behind, before, structs };
 
-/// Where outputs lie: in memory of their own; over inputs where the interface allows it; and as a run's lattice has it, a
-/// population over its opposite.
+/// Where outputs lie: in memory of their own; over inputs where the interface allows it; and as a run's lattice has it,
+/// a population over its opposite.
 enum class Outputs { apart, over_inputs, streamed };
 
 /// Sees the moment right before and right after the model's function runs; allocations of compute() lie outside.
@@ -54,9 +54,9 @@ struct Call {
 Values compute(const Subject& subject, const plugin::ModelInstance& instance, const Values& inputs,
                const Call& call = {});
 
-/// The same call again and again, in memory that is laid out once, so that most of its time is the model's: each call says
-/// whether the outputs are `expected`, bit for bit, and throws as compute does. In double precision. Subject, instance and
-/// `expected` outlive what is returned.
+/// The same call again and again, in memory that is laid out once, so that most of its time is the model's: each call
+/// says whether the outputs are `expected`, bit for bit, and throws as compute does. In double precision. Subject,
+/// instance and `expected` outlive what is returned.
 std::function<bool()> repeated_call(const Subject& subject, const plugin::ModelInstance& instance, const Values& inputs,
                                     const Values& expected);
 

@@ -13,8 +13,8 @@
 #include <cstring>
 #include <ctime>
 
+#include "allocation_count.hpp"
 #include "base/foreign_call.hpp"
-#include "conform/allocation_count.hpp"
 
 namespace {
 

@@ -140,8 +140,8 @@ bool is_clamped(const Subject& subject, const Trial& trial) {
   return false;
 }
 
-/// A sheet that is stretched along one direction and keeps its width is the same in both dimensions: T(l) = 2 l (w1 + w2) at
-/// I1 = I2 = l^2 - 1.
+/// A sheet that is stretched along one direction and keeps its width is the same in both dimensions: T(l) = 2 l (w1 +
+/// w2) at I1 = I2 = l^2 - 1.
 void compare_clamped(Worst& worst, const Subject& outline, const Subject& surface) {
   Random random = outline.random();
   constexpr std::size_t count = 64;

@@ -1,4 +1,5 @@
-// Level "robustness": that a model's functions reach for nothing but their arguments, and leave nothing but their results.
+// Level "robustness": that a model's functions reach for nothing but their arguments, and leave nothing but their
+// results.
 #include <dlfcn.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -9,21 +10,21 @@
 #include <sstream>
 #include <thread>
 
+#include "allocation_count.hpp"
 #include "base/error.hpp"
 #include "base/foreign_call.hpp"
 #include "base/text.hpp"
-#include "conform/allocation_count.hpp"
 #include "conform/call.hpp"
 #include "conform/check.hpp"
-#include "conform/frozen_memory.hpp"
-#include "conform/process_traces.hpp"
+#include "conform/checks/trials.hpp"
 #include "conform/report_line.hpp"
 #include "conform/subject.hpp"
-#include "conform/syscall_trap.hpp"
-#include "conform/worlds.hpp"
+#include "frozen_memory.hpp"
 #include "plugin/library.hpp"
 #include "plugin/table_checks.hpp"
-#include "trials.hpp"
+#include "process_traces.hpp"
+#include "syscall_trap.hpp"
+#include "worlds.hpp"
 
 namespace rouleau::conform {
 
@@ -68,8 +69,9 @@ std::vector<Trial> some_trials(const Subject& subject, Random& random) {
   return trials(subject, random, subject.typical_setting(), 3);
 }
 
-/// Lets the model's function make no system call and read no clock, and counts what it allocates and locks, and how often it reads
-/// the clock: not every machine lets that be forbidden. As there is no way back, the thread ends after the call.
+/// Lets the model's function make no system call and read no clock, and counts what it allocates and locks, and how
+/// often it reads the clock: not every machine lets that be forbidden. As there is no way back, the thread ends after
+/// the call.
 class QuietWatch : public CallWatch {
  public:
   std::atomic<bool> done{false};
@@ -203,7 +205,8 @@ Finding system_calls(const Subject& subject) {
   return Finding::passed("loading, opening, creating and destroying ask the kernel for memory alone");
 }
 
-/// Runs what was registered for the end of the program, in a process of its own. Ends this one when that found something.
+/// Runs what was registered for the end of the program, in a process of its own. Ends this one when that found
+/// something.
 std::string at_the_end(const Subject& subject) {
   const pid_t child = fork();
   if (child == 0) {

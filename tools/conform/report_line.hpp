@@ -13,7 +13,8 @@ Finding finding_from(const nlohmann::json& json);
 void send(const Finding& finding);
 /// Writes a text for another check's process.
 void send(const std::string& text);
-/// The same as send(finding) from a signal handler: no allocation. `text` must hold no quotes, backslashes or control characters.
+/// The same as send(finding) from a signal handler: no allocation. `text` must hold no quotes, backslashes or control
+/// characters.
 void send_from_signal(const char* verdict, const char* text);
 
 }  // namespace rouleau::conform

@@ -56,8 +56,8 @@ std::array<Slope, step_sizes> all_slopes(double value, double largest, double of
   for (int p = first + 2; p < first + probes; ++p) {
     noise = std::max(noise, std::abs(f(p) - f(first) - rise * (offset(p, largest) - x0)));
   }
-  // Near to rest, or to a cutoff, a function is small, but not the terms that cancel there: they are of the size that its
-  // curvature has over the whole of the variable.
+  // Near to rest, or to a cutoff, a function is small, but not the terms that cancel there: they are of the size that
+  // its curvature has over the whole of the variable.
   const double curved = std::abs(f(reach) - 2 * f(first) + f(0)), ratio = std::abs(value) / largest;
   noise = std::max(noise, epsilon * curved * ratio * ratio);
   // What the rounding of the abscissa itself makes of a slope, where steps are small beside it.
@@ -85,8 +85,8 @@ std::array<Slope, step_sizes> all_slopes(double value, double largest, double of
   return result;
 }
 
-/// What rounding does to outputs where terms cancel: probes so close that they all round alike do not show it, but other
-/// roundings of the parameters do, which change each term on its own.
+/// What rounding does to outputs where terms cancel: probes so close that they all round alike do not show it, but
+/// other roundings of the parameters do, which change each term on its own.
 Values roundings(const Subject& subject, const Trial& trial, const Values& inputs) {
   Random random = subject.random();
   Call call;

@@ -14,9 +14,9 @@
 #include "allocation_count.hpp"
 #include "base/process.hpp"
 #include "base/text.hpp"
-#include "call.hpp"
-#include "checks/trials.hpp"
-#include "report_line.hpp"
+#include "conform/call.hpp"
+#include "conform/checks/trials.hpp"
+#include "conform/report_line.hpp"
 
 namespace rouleau::conform {
 

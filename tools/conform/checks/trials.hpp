@@ -30,8 +30,8 @@ std::vector<Trial> setting_trials(const Subject& subject, Random& random, int dr
 
 /// Outputs of an instance for inputs, by name.
 using Results = std::function<Values(const plugin::ModelInstance&, const Values&)>;
-/// How far results move when parameters and inputs are rounded differently, by up to `roundings` epsilon: the largest of
-/// eight tries. `only_units`: what has no unit stays.
+/// How far results move when parameters and inputs are rounded differently, by up to `roundings` epsilon: the largest
+/// of eight tries. `only_units`: what has no unit stays.
 Values sensitivity(const Subject& subject, const Trial& trial, const Values& inputs, Random& random, double roundings,
                    bool only_units, const Results& results);
 

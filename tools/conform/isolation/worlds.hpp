@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "subject.hpp"
+#include "conform/subject.hpp"
 
 namespace rouleau::conform {
 

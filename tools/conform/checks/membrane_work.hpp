@@ -18,7 +18,8 @@ struct MembraneCoordinate {
 /// Those of a law's element whose force the law gives.
 std::vector<MembraneCoordinate> coordinates_of(const plugin::Manifest& manifest);
 
-/// Elements at rest: stretch 1, rate 0, invariants 0, curvature and what cells have as at rest, state with its initial values.
+/// Elements at rest: stretch 1, rate 0, invariants 0, curvature and what cells have as at rest, state with its initial
+/// values.
 Values at_rest(const Subject& subject, const Trial& trial, std::size_t count, Random& random);
 
 /// Makes the state that a step has left the input of the next one.

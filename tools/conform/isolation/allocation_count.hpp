@@ -1,5 +1,6 @@
-// What the C library's functions do for a model in the program of the checks, which stands before some of them: how often
-// this process has allocated memory, taken locks and read the clock, where memory comes from, and what the world looks like.
+// What the C library's functions do for a model in the program of the checks, which stands before some of them: how
+// often this process has allocated memory, taken locks and read the clock, where memory comes from, and what the world
+// looks like.
 #pragma once
 
 #include <atomic>

@@ -142,7 +142,8 @@ struct CollisionNode {
   }
 };
 
-/// The nodes of inputs or outputs, which outlive this; what they do not hold is 0, the relaxation rate that of the setup.
+/// The nodes of inputs or outputs, which outlive this; what they do not hold is 0, the relaxation rate that of the
+/// setup.
 class CollisionNodes {
  public:
   CollisionNodes(const Values& values, const Trial& trial)

@@ -1,8 +1,9 @@
 // The program that runs one conformance check of one plugin; `rouleau conform` starts it, once for every check.
 //
 // usage: conform-check MANIFEST CHECK SEED DIMENSION
-// The check of surroundings adds a WORLD (conform/worlds.hpp), and the program itself one word more when it is there.
-// The finding goes to file descriptor 3 (conform/report_line.hpp). Whatever the plugin does ends with this process.
+//
+// The check of surroundings adds a WORLD (isolation/worlds.hpp), and the program itself one word more when it is there.
+// The finding goes to file descriptor 3 (report_line.hpp). Whatever the plugin does ends with this process.
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <ucontext.h>
@@ -18,12 +19,12 @@
 #include "base/error.hpp"
 #include "conform/call.hpp"
 #include "conform/check.hpp"
-#include "conform/frozen_memory.hpp"
 #include "conform/guarded_memory.hpp"
+#include "conform/isolation/frozen_memory.hpp"
+#include "conform/isolation/syscall_trap.hpp"
+#include "conform/isolation/worlds.hpp"
 #include "conform/report_line.hpp"
 #include "conform/subject.hpp"
-#include "conform/syscall_trap.hpp"
-#include "conform/worlds.hpp"
 
 namespace {
 

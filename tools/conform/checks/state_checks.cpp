@@ -117,8 +117,8 @@ Finding half_steps(const Subject& subject) {
       for (std::size_t k = 0; k < subject.manifest().state.size() && random() % 2 == 0; ++k) {
         inputs["state." + std::to_string(k)].assign(state_elements, trial.instance.initial_state()[k]);
       }
-      // From the longest step to the shortest that still changes something: what a long one may do is not asked, and around
-      // the time of something quick, which may be the 2^-200th of a step, steps differ; not so the ones below.
+      // From the longest step to the shortest that still changes something: what a long one may do is not asked, and
+      // around the time of something quick, which may be the 2^-200th of a step, steps differ; not so the ones below.
       constexpr int enough = 9;
       struct Told {
         double size = 0, before = 0, change = 0, difference = 0, limit = 0;

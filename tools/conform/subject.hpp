@@ -75,8 +75,8 @@ class Subject {
                                            const plugin::ModelSetting& setting) const {
     return {manifest_, parameters, setting};
   }
-  /// Instances of each setting with typical parameters and, in turn, with each other word of each choice; those that the
-  /// model refuses are left out.
+  /// Instances of each setting with typical parameters and, in turn, with each other word of each choice; those that
+  /// the model refuses are left out.
   [[nodiscard]] std::vector<plugin::ModelInstance> make_each_choice() const;
 
   /// Whether calls are in single precision: those that the model computes in.
@@ -88,8 +88,8 @@ class Subject {
 
   /// The manifest's needs; of a model without any its kind's first input, which it is not given: values count elements.
   [[nodiscard]] std::vector<std::string> drawn() const;
-  /// Inputs as flowing cells and fluids have them, in lattice units. State is what `steps` with other random inputs make
-  /// of its initial value.
+  /// Inputs as flowing cells and fluids have them, in lattice units. State is what `steps` with other random inputs
+  /// make of its initial value.
   [[nodiscard]] Values random_inputs(const plugin::ModelInstance& instance, std::size_t count, Random& random,
                                      int steps = 5) const;
   /// Inputs of any kind at all: ordinary, tiny, huge, special values, any bits.

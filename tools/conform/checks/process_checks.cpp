@@ -4,9 +4,9 @@
 #include <limits>
 #include <optional>
 
-#include "conform/allocation_count.hpp"
 #include "conform/call.hpp"
 #include "conform/check.hpp"
+#include "conform/isolation/allocation_count.hpp"
 #include "conform/subject.hpp"
 #include "plugin/library.hpp"
 #include "plugin/process_state.hpp"

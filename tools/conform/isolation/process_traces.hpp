@@ -11,8 +11,8 @@
 
 namespace rouleau::conform {
 
-/// Threads, descriptors, children, timers and printed text since it was made, and all that a ProcessState knows. It takes
-/// standard output and standard error; one at a time.
+/// Threads, descriptors, children, timers and printed text since it was made, and all that a ProcessState knows. It
+/// takes standard output and standard error; one at a time.
 class ProcessTraces {
  public:
   ProcessTraces();
@@ -20,7 +20,8 @@ class ProcessTraces {
   ProcessTraces(const ProcessTraces&) = delete;
   ProcessTraces& operator=(const ProcessTraces&) = delete;
 
-  /// "starts a thread", "leaves the file /tmp/x open", "prints \"hello\"", "changes the working directory"; empty: nothing.
+  /// "starts a thread", "leaves the file /tmp/x open", "prints \"hello\"", "changes the working directory"; empty:
+  /// nothing.
   [[nodiscard]] std::vector<std::string> found() const;
 
  private:

@@ -125,8 +125,8 @@ Finding equilibrium(const Subject& subject) {
       continue;
     }
     // A Maxwellian has (uuv + uvv)/4 in a diagonal population of D2Q9, and (uvv + uww)/2 in one along an axis of D3Q19,
-    // which a rate of 2 doubles; twice that for what else an operator may have. At 0.1 terms of fourth order are a tenth
-    // of those of third order: hence 7, not 8.
+    // which a rate of 2 doubles; twice that for what else an operator may have. At 0.1 terms of fourth order are a
+    // tenth of those of third order: hence 7, not 8.
     const double third_order = (trial.setting.dimension == 2 ? 2 : 4) * size * size * size;
     worst.add(whole, third_order + rounding * size,
               [&] { return "a collision changes populations in equilibrium by" + trial.words; });

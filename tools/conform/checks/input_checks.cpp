@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "base/text.hpp"
-#include "conform/allocation_count.hpp"
 #include "conform/call.hpp"
 #include "conform/check.hpp"
 #include "conform/guarded_memory.hpp"
+#include "conform/isolation/allocation_count.hpp"
 #include "conform/subject.hpp"
 #include "plugin/library.hpp"
 #include "plugin/parameter_ranges.hpp"
