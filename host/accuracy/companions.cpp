@@ -10,7 +10,7 @@
 #include "json/document.hpp"
 #include "plan/error_model.hpp"
 #include "plan/estimate.hpp"
-#include "plan/stability_limits.hpp"
+#include "plan/limits.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/lattice.hpp"
 #include "scene/stage_scales.hpp"

@@ -5,10 +5,8 @@
 
 #include "base/text.hpp"
 #include "observe/aggregates.hpp"
-#include "plan/plan_models.hpp"
-#include "plan/potential_shape.hpp"
-#include "plan/solver_setup.hpp"
-#include "plan/stability_limits.hpp"
+#include "plan/facts.hpp"
+#include "plan/limits.hpp"
 
 namespace rouleau::monitor {
 
@@ -18,9 +16,10 @@ namespace {
 /// that `plan` limits to 0.1, and not at 10 times (docs/stability.md).
 constexpr double calm_compression = plan::largest_compression_by_attraction / 2, deepest_over_shear_modulus = 8.4;
 
-plugin::ModelInstance instance(const plan::Plan& plan, std::size_t interaction, const scene::StageSetting& stage) {
-  const plan::PlannedModel& model = plan.interactions[interaction];
-  return {*model.manifest, model.parameters.values, plan::model_setting(stage, plan.scene->fluid.inertia)};
+/// None: it remembers, so that it has no one shape.
+const std::optional<plan::PotentialShape>& shape_of(const plan::Plan& plan, std::size_t interaction,
+                                                    const scene::StageSetting& stage) {
+  return plan.facts.stages[stage.index].models->potentials[interaction];
 }
 
 bool between_cells(const plan::Plan& plan, std::size_t i) {
@@ -76,16 +75,15 @@ std::string attraction_remedy(const plan::Plan& plan, const scene::StageSetting&
   std::vector<std::string> bare, ways;
   for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
     if (!between_cells(plan, i)) continue;
-    const bool remembers = !plan.interactions[i].manifest->state.empty();
-    const std::optional<plan::Well> well = remembers ? std::nullopt : plan::find_shape(instance(plan, i, stage)).well;
-    if (!remembers && !well) continue;
+    const std::optional<plan::PotentialShape>& shape = shape_of(plan, i, stage);
+    if (shape && !shape->well) continue;
     attracts = true;
-    if (!well) continue;
-    depth = std::max(depth, stage.units.to_si(well->depth, units::dimension::tension));
-    compression = std::max(compression, 3 * well->attraction);
-    const plugin::ModelSetting setting = plan::model_setting(stage, scene.fluid.inertia);
-    if (!(plan::depth_over_bending(plan, scene.interactions[i], well->depth, setting) >
-          plan::deepest_well_of_bare_faces))
+    if (!shape) continue;
+    const plan::Well& well = *shape->well;
+    depth = std::max(depth, stage.units.to_si(well.depth, units::dimension::tension));
+    compression = std::max(compression, 3 * well.attraction);
+    if (!(plan::depth_over_bending(plan, plan.facts, stage, scene.interactions[i], well.depth) >
+          plan::deepest_well_of_bare_cells(scene.domain.dimension())))
       continue;
     for (const int type : scene.interactions[i].between) {
       const std::string& name = scene.cell_types[type].name;
@@ -140,9 +138,9 @@ void blame_contact(Failure& failure, core::Surroundings<D>& around, const plan::
   const scene::Scene& scene = *plan.scene;
   Pressed most;
   for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
-    if (!between_cells(plan, i) || !plan.interactions[i].manifest->state.empty()) continue;
-    const plugin::ModelInstance potential = instance(plan, i, stage);
-    const double cutoff = potential.interaction().cutoff(potential.self());
+    if (!between_cells(plan, i) || !shape_of(plan, i, stage)) continue;
+    const core::Potential& potential = plan.made[stage.index]->interactions[i];
+    const double cutoff = shape_of(plan, i, stage)->range;
     around.show(cutoff);
     const auto& between = scene.interactions[i].between;
     for (const observe::CellContact& contact :
@@ -169,7 +167,7 @@ void blame_contact(Failure& failure, core::Surroundings<D>& around, const plan::
     failure.remedy = attraction_remedy(plan, stage);
     return;
   }
-  const plan::PotentialShape shape = plan::find_shape(instance(plan, i, stage));
+  const plan::PotentialShape& shape = *shape_of(plan, i, stage);
   failure.remedy = "move them apart, to " +
                    micrometres(shape.well ? std::max(shape.well->distance, most.gap) : shape.range, stage) + ", or " +
                    lower_density(plan, stage, calm_compression / (3 * most.pressure));

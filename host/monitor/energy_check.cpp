@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "node_checks.hpp"
-#include "plan/stability_limits.hpp"
+#include "plan/constants.hpp"
 
 namespace rouleau::monitor {
 

@@ -11,8 +11,8 @@
 #include "core/membrane/geometry.hpp"
 #include "first_failure.hpp"
 #include "node_checks.hpp"
+#include "plan/limits.hpp"
 #include "plan/solver_setup.hpp"
-#include "plan/stability_limits.hpp"
 #include "scene/driving_flow.hpp"
 #include "shape/extent.hpp"
 

@@ -5,69 +5,21 @@
 #include <numbers>
 #include <variant>
 
-#include "flow_start.hpp"
+#include "constants.hpp"
+#include "flow.hpp"
 #include "shape/outline.hpp"
 
 namespace rouleau::plan {
 
 namespace {
 
-/// Error of a shape at ten spacings a radius and tau 1, and the power of the spacing with which it falls.
-struct ShapeError {
-  double at_ten, order;
-};
-/// The first at viscosity ratio 1, the second at measured_ratio.
-using ShapeErrors = ShapeError[2];
-
-namespace in_plane {
-constexpr ShapeErrors round_cell{{0.0065, 2}, {0.029, 2}}, thin_cell{{0.040, 3}, {0.039, 2}};
-/// Stiffer round cells than at `stiff`, and softer ones than at `soft`, have larger errors, by these powers of the capillary number.
-struct CapillaryErrors {
-  double stiff, stiff_power, soft, soft_power;
-  [[nodiscard]] double growth(const CapillaryRange& capillary) const {
-    const double least = std::max(capillary.least, measured_capillary.least);
-    const double most = std::min(capillary.most, measured_capillary.most);
-    return std::max({1.0, std::pow(stiff / least, stiff_power), std::pow(most / soft, soft_power)});
-  }
-};
-constexpr CapillaryErrors by_capillary[2] = {{0.05, 0.3, 0.2, 0.6}, {0.0125, 0.2, 0.2, 0.3}};
-constexpr double thin_growth_with_tau = 0.2;  ///< of the error of thin cells, for each unit of tau above 1
-/// Of the compression squared times the Reynolds number: in deformations at viscosity ratio 1, in angles at measured_ratio.
-constexpr double by_compression[2] = {0.065, 0.15};
-// Without slip correction the tangential slip of the membrane, of first order, comes on top.
-constexpr double slip_at_ten[2] = {0.014, 0.025};
-// And where cells pass each other it keeps the plasma between them: so much too far apart they go.
-constexpr double passing_at_ten = 0.06;
-// A fluid that is simulated denser: strains at which things happen are wrong by this share of the Reynolds number.
-constexpr double motion_by_reynolds = 0.024;
-// Of a thin cell that is placed along the flow and slowly leaves that position: within this angle, rad.
-constexpr double motion_from_along_the_flow = 0.076, along_the_flow = 0.5;
-// What a cell and the walls make of each other dies out with the slowest mode of the channel's fluid, within a strain of T = Re
-// (H / 2 pi a)^2. Shapes: 0.5 (6.4 a/H)^3 exp(-1.2 strain/T), and 0.3 Re times what is left of the membrane's own relaxation. The
-// relative viscosity, over the second half of the strain: 1.7 exp(-0.7 strain/T) of what cells add, which is twice their share of the area.
-constexpr double of_shape = 0.5, shape_rate = 1.2, relaxation_by_reynolds = 0.3, of_viscosity = 3.4,
-                 viscosity_rate = 0.7;
-constexpr double measured_height = 6.4;
-}  // namespace in_plane
-
-namespace in_space {
-// Of round and of thin cells, at ten spacings a radius, for every viscosity ratio and relaxation time that was measured: what the
-// kernel takes from normal forces, of second order, and slip, of first order.
-constexpr double kernel_at_ten = 0.031, slip_at_ten = 0.022;
-constexpr double passing_at_ten = 0.085;  ///< as in the plane
-// With the slip correction and the kernel sharp6.
-constexpr ShapeErrors sharp{{0.015, 2}, {0.024, 2}};
-constexpr double motion_by_reynolds = 0.037;
-// Disturbances of the steady state die out as membranes relax: 0.5 times the Reynolds number, exp(-0.55 strain) at viscosity ratio 1
-// and exp(-0.38 strain) at measured_ratio.
-constexpr double steady_amplitude = 0.5, steady_rate[2] = {0.55, 0.38};
-}  // namespace in_space
-
-// Start-up of a flow without cells, times ((tau - 1/2)/rows)^2: between two planes, and with walls all round, from 70 % of the steady
-// flow rate on.
-constexpr double start_up = 1.2, start_up_in_duct = 5;
-// Steady flow rates: of a duct with square section times 1/rows^2, of a tube times 1/radius^2 in spacings.
-constexpr double duct = 0.26, tube = 0.65;
+/// How much larger the error of round cells is than at usual capillary numbers.
+double growth(const in_plane::CapillaryErrors& errors, const CapillaryRange& capillary) {
+  const double least = std::max(capillary.least, measured_capillary.least);
+  const double most = std::min(capillary.most, measured_capillary.most);
+  return std::max(
+      {1.0, std::pow(errors.stiff / least, errors.stiff_power), std::pow(most / errors.soft, errors.soft_power)});
+}
 
 /// How far a viscosity ratio is from 1, with the measured one at 1.
 double distance_from_one(double viscosity_ratio) {
@@ -131,7 +83,7 @@ double lattice_error(const scene::Shape& shape, double radius, double viscosity_
   } else {
     const auto& [at_one, at_measured] = in_plane::by_capillary;
     error = between(in_plane::round_cell, viscosity_ratio, radius) *
-            between(at_one.growth(capillary), at_measured.growth(capillary), viscosity_ratio);
+            between(growth(at_one, capillary), growth(at_measured, capillary), viscosity_ratio);
   }
   if (coupling == MembraneCoupling::plain)
     error += between(in_plane::slip_at_ten[0], in_plane::slip_at_ten[1], viscosity_ratio) * 10 / radius;
@@ -150,9 +102,9 @@ double stiffness_error(double compression, double reynolds, double viscosity_rat
 
 double steady_flow_error(const scene::Domain& domain, double spacing) {
   const auto square = [](double value) { return value * value; };
-  if (domain.tube_radius) return tube * square(spacing / *domain.tube_radius);
+  if (domain.tube_radius) return tube_error * square(spacing / *domain.tube_radius);
   if (!domain.is_duct()) return 0;
-  return duct *
+  return duct_error *
          square(spacing / (domain.periodic_y ? domain.depth->size : std::min(domain.size.y(), domain.depth->size)));
 }
 

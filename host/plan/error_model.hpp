@@ -2,12 +2,10 @@
 // "The error model of auto".
 #pragma once
 
+#include "constants.hpp"
 #include "scene/scene.hpp"
 
 namespace rouleau::plan {
-
-/// Errors were measured for cells whose inside is as viscous as the fluid around them, up to so many times as viscous.
-inline constexpr double measured_ratio = 5;
 
 /// Es/(mu a) of a scene's cells, 1/s: shear rates over it are capillary numbers. Es is a third of the stretching stiffness, as of a
 /// neo-Hookean membrane.
@@ -15,13 +13,6 @@ struct RecoveryRates {
   double least, most;
   bool operator==(const RecoveryRates&) const = default;
 };
-/// Smallest and largest capillary number of a scene's cells and flows.
-struct CapillaryRange {
-  double least, most;
-};
-/// Those for which errors were measured, in two dimensions and in three.
-inline constexpr CapillaryRange measured_capillary{0.003, 0.8}, measured_capillary_in_space{0.0035, 0.7};
-
 /// The radius that a lattice must resolve, m: the smallest semi-axis; of a biconcave cell and of a surface from a file half the
 /// length.
 double resolved_radius(const scene::Shape& shape);
@@ -61,8 +52,6 @@ double steady_flow_error(const scene::Domain& domain, double spacing);
 /// What it leaves in the start of a flow without cells.
 double flow_start_error(const scene::Domain& domain, double spacing, double tau);
 
-/// Strain from which on what happens in a motion keeps the target of auto; what happens before errs by as much strain at most.
-inline constexpr double first_events = 5;
 /// Relative error of strains at which something happens to a scene's cells, at this simulated Reynolds number.
 double motion_error(double reynolds, const scene::Scene& scene);
 /// A cell on its way to a steady state, in two dimensions between walls.

@@ -7,27 +7,15 @@
 #include "base/error.hpp"
 #include "base/process.hpp"
 #include "base/text.hpp"
+#include "constants.hpp"
 #include "output_schedule.hpp"
-#include "plugin/handles.hpp"
 #include "scene/lattice.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
-#include "stability_limits.hpp"
 
 namespace rouleau::plan {
 
 namespace {
-
-/// Bytes of HDF5's own, measured on files of 6 to 251 frames. A compressed dataset has an index of its chunks.
-namespace hdf5 {
-constexpr double file = 12100, frame = 256, membranes = 1244, fields = 97, dataset = 307, compressed_dataset = 3043;
-}
-
-/// Bytes of a row, measured: most numbers have 17 digits. Fluid alone leaves half of series.csv undefined.
-namespace row {
-constexpr double cells = 263, wall_gap = 19, aggregates = 59, series = 363, series_of_fluid = 235, sizes = 48,
-                 all_headers = 860;
-}
 
 /// Outputs of a stage behind its first state, its end included; of one that has too many to count, extrapolated.
 struct Counts {
@@ -96,20 +84,6 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<scen
   return estimate;
 }
 
-/// Of the interactions between cells and within them, spacings.
-double largest_cutoff(const Plan& plan) {
-  double largest = 0;
-  for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
-    const PlannedModel& model = plan.interactions[i];
-    const scene::Interaction& between = plan.scene->interactions[i];
-    if (!model.active() || between.with_wall()) continue;
-    const plugin::ModelInstance potential(*model.manifest, model.parameters.values,
-                                          model_setting(plan.stages.front(), plan.scene->fluid.inertia));
-    largest = std::max(largest, potential.interaction().cutoff(potential.self()));
-  }
-  return largest;
-}
-
 /// Surfaces of other cells within the largest cutoff of a node where cells lie anywhere: those in the free volume,
 /// times what lies within the cutoff of one (Steiner's formula with its area and radius). A half at least, as of a
 /// doublet whose faces touch.
@@ -130,16 +104,16 @@ double surfaces_near_a_node(const scene::Scene& scene, double cutoff) {
   return std::max(0.5, within * (cells - 1) / cells / std::max(room, 0.1 * scene.domain.content()));
 }
 
-/// Measured at 3 924 nodes (docs/three-dimensions.md).
 double cost_of_membrane_node(int dimension, const MembraneScheme& scheme) {
-  if (dimension == 2) return 50e-9;
+  if (dimension == 2) return cost::of_outline_node;
+  double all = cost::of_surface_node;
   // The triangles of a surface within the cutoff are as many as its square says.
-  double cost = 100e-9;
-  if (scheme.cutoff > 0) cost += scheme.near * (100e-9 + 1.8e-9 * scheme.cutoff * scheme.cutoff);
-  if (scheme.sharp_kernel) cost += 55e-9;
-  if (scheme.slip_correction) cost += scheme.viscosity_contrast ? 110e-9 : 55e-9;
-  if (scheme.semi_implicit) cost += 60e-9;
-  return cost;
+  if (scheme.cutoff > 0)
+    all += scheme.near * (cost::near_surface + cost::near_by_square * scheme.cutoff * scheme.cutoff);
+  if (scheme.sharp_kernel) all += cost::sharp_kernel;
+  if (scheme.slip_correction) all += scheme.viscosity_contrast ? cost::slip_of_contrast : cost::slip;
+  if (scheme.semi_implicit) all += cost::semi_implicit;
+  return all;
 }
 
 }  // namespace
@@ -155,7 +129,7 @@ double membrane_nodes(const scene::Scene& scene) {
 MembraneScheme membrane_scheme(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   if (!scene.domain.depth) return {};
-  const double cutoff = largest_cutoff(plan);
+  const double cutoff = plan.facts.stages.front().models->cutoff;
   return {.cutoff = cutoff,
           .near = surfaces_near_a_node(scene, cutoff * scene::lattice_spacing(scene)),
           .sharp_kernel = kernel_named(scene.numerics.kernel).kind == core::KernelKind::sharp6,
@@ -166,12 +140,13 @@ MembraneScheme membrane_scheme(const Plan& plan) {
 
 double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension,
                  const MembraneScheme& scheme) {
-  const bool f64 = precision == scene::Precision::f64;
-  const double of_node = dimension == 2 ? (f64 ? 1.5e-9 : 0.85e-9) : (f64 ? 13e-9 : 7e-9);
+  const double of_node = cost::of_node[dimension - 2][precision == scene::Precision::f64 ? 1 : 0];
   return lattice_nodes * of_node + membrane_nodes * cost_of_membrane_node(dimension, scheme);
 }
 
-double membrane_memory(const scene::Scene& scene) { return membrane_nodes(scene) * (scene.domain.depth ? 1200 : 400); }
+double membrane_memory(const scene::Scene& scene) {
+  return membrane_nodes(scene) * cost::bytes_of_node[scene.domain.dimension() - 2];
+}
 
 void require_memory(double bytes, const std::string& what) {
   const double left = available_memory();

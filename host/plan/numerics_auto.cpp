@@ -8,19 +8,20 @@
 #include <optional>
 
 #include "base/text.hpp"
+#include "constants.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "error_model.hpp"
 #include "estimate.hpp"
-#include "flow_start.hpp"
+#include "flow.hpp"
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
+#include "limits.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/lattice.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
-#include "stability_limits.hpp"
 
 namespace rouleau::plan {
 namespace {
@@ -33,11 +34,8 @@ constexpr const char* origin = "numerics.auto";
 constexpr double nearly = 0.999;  ///< as much of a limit as is taken
 constexpr double nothing = 1e-6;  ///< an error that is none
 constexpr std::array relaxation_times{0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0};
-constexpr double least_of_layers = 0.01;  ///< of tau - 1/2 in a layer: twice the limit of the plan
-constexpr double finest_radius = 80;      ///< spacings; more is never chosen
-constexpr int fewest_rows = 16;           ///< of a lattice without cells
-// Without a flow inertia only decides how membranes come to rest. The limits of the plan lower it where they must.
-constexpr double density_factor_at_rest = 13000;
+constexpr double finest_radius = 80;                    ///< spacings; more is never chosen
+constexpr int fewest_rows = 16;                         ///< of a lattice without cells
 constexpr CapillaryRange usual_capillary{0.0125, 0.2};  ///< before it is known
 
 /// What a person would write: three digits, rounded down. Whole numbers stay whole.

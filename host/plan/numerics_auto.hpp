@@ -1,7 +1,6 @@
 // "numerics": "auto": resolution, relaxation time, relaxed density and coupling chosen for a target error.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include "error_model.hpp"
 #include "json/json.hpp"
+#include "numerics_choice.hpp"
 
 namespace rouleau::json {
 class Document;
@@ -19,35 +19,6 @@ namespace rouleau::scene {
 struct Scene;
 }  // namespace rouleau::scene
 namespace rouleau::plan {
-
-/// Parts of the error that is expected of a result, relative.
-struct ErrorShares {
-  double resolution = 0;  ///< of the lattice
-  double inertia = 0;     ///< of the fluid that is simulated denser than it is
-  double start = 0;       ///< of that fluid's start from rest
-  [[nodiscard]] double total() const { return resolution + inertia + start; }
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE_WITH_DEFAULT(ErrorShares, resolution, inertia, start)
-};
-
-struct ChosenValue {
-  std::string pointer;  ///< into the scene
-  nlohmann::json value;
-  std::string why;
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(ChosenValue, pointer, value, why)
-};
-
-/// What was chosen for a scene that leaves its numerics open, and why.
-struct NumericsChoice {
-  double target;  ///< relative error that was asked for
-  bool steady;    ///< asked for the steady state, not for the motion
-  ErrorShares expected;
-  std::vector<ChosenValue> values;  ///< what the scene leaves open
-  std::string doubt;                ///< why the target may not be met, or only at a price; empty: it should
-  [[nodiscard]] bool has(const std::string& pointer) const {
-    return std::any_of(values.begin(), values.end(),
-                       [&](const ChosenValue& value) { return value.pointer == pointer; });
-  }
-};
 
 /// Null where nothing was left open.
 nlohmann::json to_json(const std::optional<NumericsChoice>& choice);

@@ -21,7 +21,6 @@
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
 #include "shape/surface.hpp"
-#include "solver_setup.hpp"
 
 namespace rouleau::plan {
 namespace {

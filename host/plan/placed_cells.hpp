@@ -6,7 +6,7 @@
 
 #include "core/membrane/membranes.hpp"
 #include "core/surface/surfaces.hpp"
-#include "plan.hpp"
+#include "scene/lattice.hpp"
 
 namespace rouleau::plan {
 

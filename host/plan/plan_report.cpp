@@ -5,9 +5,8 @@
 #include <limits>
 
 #include "base/text.hpp"
-#include "cell_travel.hpp"
+#include "constants.hpp"
 #include "core/solver/schedule.hpp"
-#include "flow_start.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/lattice.hpp"
 #include "scene/scene_reader.hpp"
@@ -62,7 +61,7 @@ std::map<std::string, double> dimensionless_numbers(const Plan& plan, const std:
   return {{"reynolds_physical", reynolds},
           {"reynolds_simulated", reynolds * factor},
           {"capillary", stress * radius / shear_modulus(plan)},
-          {"membrane_strain", plan.has_cells ? stress * radius / stretching_modulus(plan) : undefined},
+          {"membrane_strain", plan.has_cells ? stress * radius / stretching_modulus(plan, plan.facts) : undefined},
           {"adhesion_number", stress > 0 ? deepest_well(plan, wells) / (stress * radius) : undefined},
           {"viscosity_ratio", plan.has_cells ? ratio : undefined},
           {"hematocrit", hematocrit(scene)},
@@ -244,8 +243,8 @@ std::vector<Omission> omissions(const Plan& plan) {
     }
   }
   if (!scene.fluid.inertia) {
-    const bool follows = std::any_of(plan.stages.begin(), plan.stages.end(),
-                                     [&](const scene::StageSetting& stage) { return follows_cells(scene, stage); });
+    const bool follows = std::any_of(plan.facts.stages.begin(), plan.facts.stages.end(),
+                                     [](const StageFacts& stage) { return stage.follows_cells; });
     omit("convective inertia", std::string("fluid.inertia is false: linear (Stokes) equilibrium") +
                                    (follows ? ", its unsteady term in a frame that moves with the cells" : ""));
   }
@@ -355,9 +354,8 @@ std::vector<LateStart> late_starts(const Plan& plan) {
   std::vector<LateStart> found;
   if (!plan.has_cells) return found;  // how the flow starts is what is computed
   for (const scene::StageSetting& stage : plan.stages) {
-    const double late = flow_start(*plan.scene, stage.index).delay;
-    const double strain =
-        static_cast<double>(stage.max_steps) * stage.units.time * scene::mean_shear_rate(*stage.stage, *plan.scene);
+    const StageFacts& facts = plan.facts.stages[stage.index];
+    const double late = facts.start.delay, strain = facts.strain;
     if (late > slight * strain && strain > 0) found.push_back({stage.stage->name, late, strain});
   }
   return found;
@@ -372,8 +370,7 @@ std::optional<BoxShare> box_share(const scene::Scene& scene) {
   for (const scene::CellPlacement& cell : scene.cells)
     radius = std::max(radius, shape::shape_radius(scene.cell_types[cell.type].shape));
   const double radii = std::min(domain.size.minCoeff(), domain.depth->size) / radius;
-  constexpr double least_measured = 6;
-  return BoxShare{radii, 0.012 * std::pow(8 / std::max(radii, least_measured), 3), radii < least_measured};
+  return BoxShare{radii, box_share_at_eight * std::pow(8 / std::max(radii, smallest_box), 3), radii < smallest_box};
 }
 
 /// Of a run that takes hours; empty: it does not.
@@ -394,7 +391,7 @@ PlanReport make_report(const Plan& plan) {
   report.passes = planned_passes(plan);
   report.left_out = omissions(plan);
   report.limits = find_limits(plan);
-  report.wells = describe_wells(plan);
+  report.wells = plan.facts.wells;
   report.attracting = attracting_types(plan, report.wells);
   report.close_gap = plan.scene->output.aggregate_gap;
   report.warnings = warnings_of(plan, report.limits, report.wells);

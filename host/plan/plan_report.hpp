@@ -10,9 +10,8 @@
 
 #include "estimate.hpp"
 #include "json/json.hpp"
+#include "limits.hpp"
 #include "plan.hpp"
-#include "plan_models.hpp"
-#include "stability_limits.hpp"
 
 namespace rouleau::plan {
 
@@ -81,7 +80,6 @@ struct PlanReport {
   Estimate estimate;
 };
 
-/// Opens the libraries of active models, as make_plan() has done before.
 PlanReport make_report(const Plan& plan);
 
 /// "in stage shear everything comes late by a strain of 1.31 (of 15)"

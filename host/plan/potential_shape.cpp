@@ -20,7 +20,7 @@ std::vector<double> differences(const std::vector<double>& x, const std::vector<
   return slope;
 }
 
-Curve evaluate(const plugin::ModelInstance& potential, std::vector<double> distance) {
+Curve evaluate(const core::Potential& potential, std::vector<double> distance) {
   const std::size_t count = distance.size();
   Curve curve{std::move(distance), {}, std::vector<double>(count), {}};
   rouleau_interaction_block block{};
@@ -29,20 +29,20 @@ Curve evaluate(const plugin::ModelInstance& potential, std::vector<double> dista
   block.time_step = 1;
   block.distance = curve.distance.data();
   const std::vector<double> at_rest(count, 0.0);
-  if (potential.manifest().needs_input("normal_velocity")) block.normal_velocity = at_rest.data();
-  if (potential.manifest().needs_input("tangential_velocity")) block.tangential_velocity = at_rest.data();
-  if (potential.manifest().needs_input("sliding_speed")) block.sliding_speed = at_rest.data();
+  if (potential.reads("normal_velocity")) block.normal_velocity = at_rest.data();
+  if (potential.reads("tangential_velocity")) block.tangential_velocity = at_rest.data();
+  if (potential.reads("sliding_speed")) block.sliding_speed = at_rest.data();
   block.force = curve.force.data();
-  if (potential.manifest().gives_output("energy")) {
+  if (potential.writes("energy")) {
     curve.energy.resize(count);
     block.energy = curve.energy.data();
   }
-  const bool derivative = potential.manifest().gives_output("force_by_distance");
+  const bool derivative = potential.writes("force_by_distance");
   if (derivative) {
     curve.stiffness.resize(count);
     block.force_by_distance = curve.stiffness.data();
   }
-  call_foreign(potential.manifest().id, "compute", [&] { potential.interaction().compute(potential.self(), &block); });
+  potential.compute(&block);
   if (!derivative) curve.stiffness = differences(curve.distance, curve.force);
   return curve;
 }
@@ -60,14 +60,14 @@ std::vector<double> spread(double from, double first, double to, int count) {
 
 }  // namespace
 
-double force_at(const plugin::ModelInstance& potential, double distance) {
+double force_at(const core::Potential& potential, double distance) {
   return evaluate(potential, {distance}).force.front();
 }
 
 namespace {
 
 /// Where the force turns from repulsion, at `low`, to attraction, at `high`.
-double turning_point(const plugin::ModelInstance& potential, double low, double high) {
+double turning_point(const core::Potential& potential, double low, double high) {
   for (int i = 0; i < 200 && low < high; ++i) {
     const double middle = low + (high - low) / 2;
     if (middle == low || middle == high) break;
@@ -95,10 +95,10 @@ double largest(const std::vector<double>& values) {
 
 }  // namespace
 
-PotentialShape find_shape(const plugin::ModelInstance& potential) {
+PotentialShape find_shape(const core::Potential& potential) {
   constexpr int samples = 2000;
   constexpr double finest = 1e-7;
-  const double cutoff = potential.interaction().cutoff(potential.self());
+  const double cutoff = potential.table->cutoff(potential.self.get());
   PotentialShape shape{std::nullopt, cutoff, 0};
   if (!(cutoff > 0)) return shape;
   const Curve curve = evaluate(potential, spread(0, finest * cutoff, cutoff, samples));

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "plugin/model.hpp"
+#include "core/model/model.hpp"
 
 namespace rouleau::plan {
 
@@ -24,9 +24,9 @@ struct PotentialShape {
 };
 
 /// Finds wells at any scale between the cutoff and a ten-millionth of it, however narrow.
-PotentialShape find_shape(const plugin::ModelInstance& potential);
+PotentialShape find_shape(const core::Potential& potential);
 
 /// Force per area at a distance; positive repels.
-double force_at(const plugin::ModelInstance& potential, double distance);
+double force_at(const core::Potential& potential, double distance);
 
 }  // namespace rouleau::plan

@@ -5,13 +5,14 @@
 
 #include "base/input_file.hpp"
 #include "base/text.hpp"
+#include "constants.hpp"
 #include "json/document.hpp"
-#include "plan_models.hpp"
+#include "limits.hpp"
+#include "plan.hpp"
 #include "plugin/library.hpp"
 #include "scene/named_files.hpp"
 #include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
-#include "stability_limits.hpp"
 
 namespace rouleau::plan {
 namespace {
@@ -20,19 +21,10 @@ namespace {
 constexpr int most_tries = 20, most_packings = 3;
 constexpr double to_spare = 1.02;
 
-/// With the slip correction plasma drains from between cells, and where wells are deeper than this share of the membranes'
-/// stretching modulus some become so thin then that their own faces touch: of four red cells at rest at 0.072 one crossed itself,
-/// at 0.003 none did, sheared to a strain of 30 (docs/accuracy.md, cells in contact); between them nothing was measured. A
-/// wall is another matter: red cells come to rest on one at 0.056, with the slip correction and without. A potential
-/// within the membranes keeps their faces apart: with one a pair comes to rest at 0.6 (1.1e-5 J/m2). In three dimensions
-/// none crossed itself: of two red cells at rest at 6e-6 J/m2, 1.2 times their shear modulus, of four at 1.3e-6 and 5e-6.
-constexpr double deepest_corrected_well = 0.02;
-
 bool attracts_strongly(const Plan& plan) {
   if (plan.has_self_interactions || plan.scene->domain.depth) return false;
-  const double modulus = stretching_modulus(plan);
-  const std::vector<InteractionWell> wells = describe_wells(plan);
-  return std::any_of(wells.begin(), wells.end(), [&](const InteractionWell& described) {
+  const double modulus = stretching_modulus(plan, plan.facts);
+  return std::any_of(plan.facts.wells.begin(), plan.facts.wells.end(), [&](const InteractionWell& described) {
     return described.well.attracts() && described.between[1] != scene::wall_name &&
            !(described.well.depth <= deepest_corrected_well * modulus);
   });
@@ -40,7 +32,7 @@ bool attracts_strongly(const Plan& plan) {
 
 NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
   if (attracts_strongly(plan)) bounds.slip_correction = false;
-  bounds.recovery = recovery_rates(plan);
+  bounds.recovery = recovery_rates(plan, plan.facts);
   for (const Limit& limit : find_limits(plan)) {
     if (limit.margin >= 1 || !(limit.margin > 0)) continue;
     if (limit.remedied_by == RemediedBy::density_factor) {

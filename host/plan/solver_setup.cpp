@@ -2,10 +2,7 @@
 
 #include <cmath>
 
-#include "cell_travel.hpp"
-#include "plugin/handles.hpp"
-#include "scene/driving_flow.hpp"
-#include "stability_limits.hpp"
+#include "constants.hpp"
 
 namespace rouleau::plan {
 
@@ -13,15 +10,14 @@ template <int D>
 core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
   const scene::Scene& scene = *plan.scene;
   const scene::StageSetting& stage = plan.stages[index];
-  const plugin::ModelSetting setting = model_setting(stage, scene.fluid.inertia);
-  const auto values = [](const PlannedModel& model) -> const std::vector<double>& { return model.parameters.values; };
+  const StageModels& made = *plan.made[index];
 
   core::BasicSolverSetup<D> setup{
       .domain = scene::lattice_domain<D>(scene),
       .tau = stage.tau,
       .layers = scene::lattice_layers(scene),
       .inertia = scene.fluid.inertia,
-      .follow_cells = follows_cells(scene, stage),
+      .follow_cells = plan.facts.stages[index].follows_cells,
       .walls = stage.walls,
       .body_force_x = stage.body_force_x,
       .body_force_y = stage.body_force_y,
@@ -32,12 +28,12 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
                            ? stage.units.to_lattice(*stage.stage->mean_velocity, units::dimension::velocity)
                            : 0,
       .developed = stage.stage->start == scene::WallStart::developed,
-      .collision = plugin::make_collision_operator(*plan.collision.manifest, values(plan.collision), setting),
+      .collision = made.collision,
       .kernel = kernel_named(scene.numerics.kernel).kind,
       .semi_implicit = plan.semi_implicit,
       .slip_correction = scene.numerics.slip_correction,
       .area_correction = scene.numerics.area_correction,
-      .strain_per_step = scene::mean_shear_rate(*stage.stage, scene) * stage.units.time,
+      .strain_per_step = plan.facts.stages[index].shear_rate * stage.units.time,
       .time_step = stage.stage->density_factor,  // proportional to it
       .tension_unit = stage.units.unit(units::dimension::tension)};
   if constexpr (D == 3) {
@@ -52,21 +48,18 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
   for (std::size_t t = 0; t < scene.cell_types.size(); ++t) {
     core::CellType& type = setup.cell_types.emplace_back();
     type.viscosity_ratio = scene.cell_types[t].interior_viscosity / scene.fluid.viscosity;
-    for (const PlannedModel& law : plan.membranes[t]) {
-      if (law.active()) type.laws.push_back(plugin::make_membrane_law(*law.manifest, values(law), setting));
-    }
+    type.laws = made.membranes[t];
   }
   for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
-    const PlannedModel& potential = plan.interactions[i];
-    if (!potential.active()) continue;
+    if (!plan.interactions[i].active()) continue;
     const scene::Interaction& interaction = scene.interactions[i];
-    core::Potential made = plugin::make_potential(*potential.manifest, values(potential), setting);
+    const core::Potential& potential = made.interactions[i];
     if (interaction.with_wall()) {
-      setup.wall_interactions.push_back({.type = interaction.between[0], .potential = std::move(made)});
+      setup.wall_interactions.push_back({.type = interaction.between[0], .potential = potential});
     } else if (interaction.with_self()) {
-      setup.self_interactions.push_back({.type = interaction.between[0], .potential = std::move(made)});
+      setup.self_interactions.push_back({.type = interaction.between[0], .potential = potential});
     } else {
-      setup.interactions.push_back({.between = interaction.between, .potential = std::move(made)});
+      setup.interactions.push_back({.between = interaction.between, .potential = potential});
     }
   }
   return setup;

@@ -4,12 +4,13 @@
 #include <array>
 #include <vector>
 
+#include "constants.hpp"
 #include "core/contact/cell_grid.hpp"
 #include "core/contact/surface_contacts.hpp"
 #include "core/membrane/geometry.hpp"
 #include "placed_cells.hpp"
 #include "scene/driving_flow.hpp"
-#include "solver_setup.hpp"
+#include "scene/lattice.hpp"
 
 namespace rouleau::plan {
 

@@ -7,10 +7,6 @@
 
 namespace rouleau::plan {
 
-/// Between cells, and to plane walls, spacings: a kernel moves nodes that are nearer together, as one membrane, and so
-/// near to a wall it reaches beyond it.
-inline constexpr double least_gap_at_start = 1;
-
 /// Smallest gaps at the start, lattice spacings; infinite where nothing is near.
 struct StartGaps {
   double cells = std::numeric_limits<double>::infinity();  ///< between two cells, images included

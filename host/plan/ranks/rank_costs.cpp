@@ -14,10 +14,10 @@
 #include "core/membrane/membranes.hpp"
 #include "core/membrane/rounding.hpp"
 #include "core/solver/ghost_cells.hpp"
+#include "plan/constants.hpp"
 #include "plan/estimate.hpp"
 #include "plan/placed_cells.hpp"
 #include "plan/solver_setup.hpp"
-#include "plan/stability_limits.hpp"
 
 namespace rouleau::plan {
 

@@ -6,7 +6,7 @@
 #include "core/coupling/kernel.hpp"
 #include "core/coupling/slip_constants.hpp"
 #include "core/fluid/periodic.hpp"
-#include "plan/stability_limits.hpp"
+#include "plan/constants.hpp"
 #include "unit/cell_fixture.hpp"
 
 using namespace rouleau::core;

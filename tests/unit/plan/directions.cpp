@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "plan/cell_travel.hpp"
+#include "plan/flow.hpp"
 #include "plan/plan_report.hpp"
 #include "plan/read_scene.hpp"
 #include "scratch_folder.hpp"

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "plan/flow_start.hpp"
+#include "plan/flow.hpp"
+#include "plan/limits.hpp"
 #include "plan/plan.hpp"
 #include "plan/read_scene.hpp"
-#include "plan/stability_limits.hpp"
 
 using namespace rouleau::plan;
 using rouleau::plugin::Catalog;

@@ -1,5 +1,5 @@
 // What a scene asks of its models.
-#include "plan/model_demands.hpp"
+#include "plan/plan.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <optional>
 
+#include "plan/limits.hpp"
 #include "plan/plan.hpp"
 #include "plan/read_scene.hpp"
-#include "plan/stability_limits.hpp"
 
 using namespace rouleau::plan;
 using namespace rouleau::plugin;
@@ -51,7 +51,7 @@ TEST_CASE("limits know the relaxation times of layers, and a driven channel its 
   CHECK(plan.viscosity_contrast);
   // Where the cells are is not known to the limits: the lowest of all layers counts.
   const Scene plain = read_scene(std::string(ROULEAU_SCENES) + "/four-cells-shear.json");
-  CHECK(explicit_margin(plan) < explicit_margin(make_plan(plain, catalog)));
+  CHECK(explicit_margin(plan.facts) < explicit_margin(make_plan(plain, catalog).facts));
 }
 
 TEST_CASE(

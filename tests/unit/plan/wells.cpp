@@ -4,6 +4,7 @@
 #include "plan/plan_report.hpp"
 #include "plan/potential_shape.hpp"
 #include "plan/read_scene.hpp"
+#include "plugin/handles.hpp"
 
 using namespace rouleau;
 using namespace rouleau::plan;
@@ -18,7 +19,7 @@ const Catalog& plugins() {
 }
 
 PotentialShape shape(const char* id, const std::vector<double>& values) {
-  return find_shape(ModelInstance(plugins().find(ModelKind::interaction, id, {}), values, {{1, 1, 1}, 1.0, false}));
+  return find_shape(make_potential(plugins().find(ModelKind::interaction, id, {}), values, {{1, 1, 1}, 1.0, false}));
 }
 
 /// Limit whose name begins so, in a scene of the scenes folder.

@@ -1,7 +1,7 @@
-// What a start of the walls or of a driving force at rest costs, in a fluid that is simulated denser than it is.
+// The undisturbed flow of a stage, as a plan knows it: how it starts, how fast it is, how fast cells travel with it.
 #pragma once
 
-#include "scene/scene.hpp"
+#include "scene/stage_scales.hpp"
 
 namespace rouleau::plan {
 
@@ -33,5 +33,28 @@ double capsule_relaxation(double capillary_number, double viscosity_ratio);
 /// to the latter's deformation. Both obey dz/ds = -z/relaxation + i g z + g/relaxation, where |z| is the deformation over
 /// a constant and arg z twice the angle: small deformations that relax, are turned by the vorticity and made by the shear.
 double capsule_left(const FlowStart& start, double relaxation, double strain);
+
+/// Without u.grad u the fluid's unsteady term depends on the frame it is seen from: a cell that travels at U in that
+/// frame meets its own disturbance as if it were passing by, an error in proportion to density_factor rho U a/mu, a the
+/// largest cell's radius. Both are such numbers, U from the undisturbed flow at the cells' centres as they were placed.
+struct CellTravel {
+  double mean = 0;    ///< of all cells together, in the lattice's frame
+  double spread = 0;  ///< of the cell that is farthest from their mean
+};
+/// None without cells and where convective inertia is kept.
+CellTravel cell_travel(const scene::Scene& scene, const scene::StageSetting& stage);
+
+/// The fluid is computed in a frame that moves with the cells where these travel together. Otherwise a capsule drifts across
+/// a shear flow in proportion to the mean, by 0.87 of its radius within a strain of 8 at a mean of 2 (docs/rheology.md): the
+/// threshold allows 0.001.
+/// Not in three dimensions, whose fluid has no such frame.
+bool follows_cells(const scene::Scene& scene, const scene::StageSetting& stage);
+
+/// Largest speed of the developed flow between walls at rest, lattice units.
+double fastest_driven_speed(const scene::StageSetting& stage, const scene::Scene& scene);
+
+/// A force across walls is held by a pressure, the force times half of the distance from wall to wall: what that makes of a cell
+/// at a wall, relative change of its content.
+double compression_by_held_force(const scene::StageSetting& stage, const scene::Scene& scene);
 
 }  // namespace rouleau::plan

@@ -1,0 +1,250 @@
+#include "cell_limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/text.hpp"
+#include "scene/driving_flow.hpp"
+#include "shape/extent.hpp"
+#include "shape/outline.hpp"
+#include "start_gaps.hpp"
+
+namespace rouleau::plan {
+
+void LimitList::below(const std::string& name, double value, double limit, const std::string& remedy,
+                      RemediedBy remedied_by, double power_of_density) {
+  if (!std::isfinite(value)) return;
+  const double margin = value > 0 ? limit / value : std::numeric_limits<double>::infinity();
+  limits_.push_back({name, value, limit, margin, remedy, remedied_by, stage_, power_of_density});
+}
+
+void LimitList::above(const std::string& name, double value, double limit, const std::string& remedy,
+                      RemediedBy remedied_by) {
+  if (std::isfinite(value)) limits_.push_back({name, value, limit, value / limit, remedy, remedied_by, stage_});
+}
+
+std::vector<Limit> LimitList::sorted() && {
+  std::stable_sort(limits_.begin(), limits_.end(), [](const Limit& a, const Limit& b) { return a.margin < b.margin; });
+  return std::move(limits_);
+}
+
+LimitedStage::LimitedStage(const Plan& of, const scene::StageSetting& setting)
+    : plan(of),
+      scene(*of.scene),
+      stage(setting),
+      facts(of.facts.stages[setting.index]),
+      in_space(scene.domain.depth),
+      most_viscous_tau(relaxation_time_of(scene::viscosity_range(scene.fluid).most, scene)),
+      where(" (stage " + stage.stage->name + ")"),
+      lower("lower " + stage.stage->density_factor_key) {
+  const bool chosen = plan.numerics_choice && plan.numerics_choice->has(stage.stage->density_factor_key);
+  density = stage.stage->has_own_density_factor() && !chosen ? RemediedBy::nothing : RemediedBy::density_factor;
+}
+
+bool reports_moments(const Plan& plan) {
+  if (plan.numerics_choice) return plan.has_cells && !plan.numerics_choice->steady;
+  if (plan.scene->cells.size() != 1) return plan.has_cells;
+  const scene::Shape& shape = plan.scene->cell_types[plan.scene->cells.front().type].shape;
+  return !std::holds_alternative<scene::Circle>(shape) && !std::holds_alternative<scene::Sphere>(shape);
+}
+
+void add_compression(const LimitedStage& of, LimitList& limits) {
+  if (of.facts.shear_rate > 0) {
+    limits.below("compression of cells by the shear" + of.where,
+                 compression_by_shear(of.most_viscous_tau, of.facts.shear_rate * of.stage.units.time),
+                 largest_compression_by_shear, of.lower + " or numerics.tau: pressure compresses the lattice's fluid",
+                 of.density);
+  }
+  if (const double compression = compression_by_held_force(of.stage, of.scene); compression > 0) {
+    limits.below("compression of cells by a force across walls" + of.where, compression, largest_compression_by_shear,
+                 of.lower + " or fluid.body_force: the walls' pressure compresses the lattice's fluid", of.density);
+  }
+}
+
+/// In three dimensions, of second order in the spacing.
+void add_leak(const LimitedStage& of, LimitList& limits) {
+  if (!(of.facts.shear_rate > 0) || !of.in_space) return;
+  const bool kept = of.scene.numerics.area_correction;
+  const double radius = shape::smallest_radius(of.scene) / scene::lattice_spacing(of.scene);
+  const double of_strain = (of.scene.cells.size() > 1 ? leak_of_many : leak_of_one) / (radius * radius);
+  limits.below((kept ? "volume kept in a cell while the flow strains by 1, as measured"
+                     : "volume that a cell is expected to leak") +
+                   of.where,
+               of_strain * (kept ? 1 : of.facts.strain), of.scene.checks.area_drift,
+               kept ? "raise the resolution" : "set numerics.area_correction to true, or raise the resolution",
+               RemediedBy::resolution);
+}
+
+void add_travel(const LimitedStage& of, LimitList& limits) {
+  const auto add = [&](const char* what, double travel) {
+    limits.below(std::string("Reynolds number of cells that ") + what + ", without convective inertia" + of.where,
+                 travel, largest_travel,
+                 of.lower + ", or set fluid.inertia to true: cells would drift across the flow wrongly", of.density);
+  };
+  const CellTravel& travel = of.facts.travel;
+  if (of.in_space && travel.mean > 0) add("move through the lattice", travel.mean);
+  if (travel.spread > 0) add("pass each other", travel.spread);
+}
+
+namespace {
+
+double stretching_gain_of(const Plan& plan) {
+  const scene::Numerics& n = plan.scene->numerics;
+  const bool in_space = plan.scene->domain.depth.has_value();
+  const bool thin = n.tau < least_tau_of_full_gain && (n.slip_correction || in_space);
+  const bool sharp_contrast = in_space && plan.viscosity_contrast && membrane_coupling(n) == MembraneCoupling::sharp;
+  return thin || n.tau > (sharp_contrast ? most_tau_of_sharp_contrast : most_tau_of_full_gain)
+             ? cautious_stretching_gain
+             : stretching_gain;
+}
+
+/// Red cells turn over later by up to half of that strain, at a strain of five: with no more than the target of auto that is a
+/// tenth of the target.
+double largest_held_strain_of(const Plan& plan) {
+  if (!plan.numerics_choice) return largest_held_strain;
+  return std::min(largest_held_strain / held_on_companions, plan.numerics_choice->target);
+}
+
+}  // namespace
+
+void add_stiffness(const LimitedStage& of, LimitList& limits) {
+  const Plan& plan = of.plan;
+  const ModelFacts& membrane = *of.facts.models;
+  const bool gains = plan.semi_implicit && semi_implicit_gains(of.scene);
+  const std::string coupled = plan.semi_implicit ? ", semi-implicit step" : " in lattice units";
+  const bool zigzags = kernel_named(of.scene.numerics.kernel).semi_implicit_from == nowhere;
+  const std::string softer = of.lower + ", with which the lattice stiffness falls" +
+                             (zigzags              ? ", or set numerics.kernel to \"peskin4\""
+                              : plan.semi_implicit ? ""
+                                                   : ", or set numerics.coupling to \"semi-implicit\"");
+  const double loss = plan.semi_implicit && zigzags ? semi_implicit_loss : 1;
+  limits.below("stretching stiffness" + coupled + of.where, membrane.stretching.value,
+               (gains ? stretching_gain_of(plan) : loss) * membrane.stretching.limit, softer, of.density);
+  limits.below("bending stiffness" + coupled + of.where, membrane.bending.value,
+               (gains ? bending_gain : loss) * membrane.bending.limit, softer, of.density);
+  if (gains && of.facts.shear_rate > 0 && of.in_space) {
+    limits.below("strain during which the semi-implicit step holds forces" + of.where,
+                 membrane.steps_of_mean * of.facts.shear_rate * of.stage.units.time, largest_held_strain_of(plan),
+                 of.lower + ": membranes turn against the forces that they hold", of.density, 2);
+  }
+}
+
+void add_slip_and_prestress(const LimitedStage& of, LimitList& limits) {
+  const ModelFacts& membrane = *of.facts.models;
+  if (membrane.slip_smoothing > 0 && of.facts.shear_rate > 0 && reports_moments(of.plan)) {
+    limits.below("smoothing of the slip, variance over radius^2" + of.where, membrane.slip_smoothing,
+                 of.plan.numerics_choice ? of.plan.numerics_choice->target : largest_slip_smoothing,
+                 of.lower +
+                     " or raise the resolution: stiff membranes need their slip smoothed, and cells turn over late, or "
+                     "early, by half of this",
+                 of.density);
+  }
+  if (membrane.prestress_compression > 0) {
+    limits.below("compression of cells by their prestress, 3 T/a" + of.where, membrane.prestress_compression,
+                 largest_compression_by_prestress,
+                 of.lower + ": pressure compresses the lattice's fluid the more, the longer the time step", of.density);
+  }
+}
+
+namespace {
+
+/// What a well squeezes cells with, where nothing keeps a cell's own faces apart.
+void add_depth(const LimitedStage& of, std::size_t i, const std::string& named, const Well& well, LimitList& limits) {
+  const scene::Interaction& interaction = of.scene.interactions[i];
+  const double depth = depth_over_bending(of.plan, of.plan.facts, of.stage, interaction, well.depth);
+  if (!(depth > 0)) return;
+  limits.below("depth of " + named + " over bending modulus / radius^2, without a repulsion within membranes", depth,
+               deepest_well_of_bare_cells(of.scene.domain.dimension()),
+               "cells that come to rest may be squeezed until their own faces touch; add an interaction between [" +
+                   in_quotes(of.scene.cell_types[interaction.between[0]].name) +
+                   ", \"self\"], such as \"repulsion\" with about three times the well's depth and a cutoff below the "
+                   "cells' least thickness");
+}
+
+/// Whether the lattice resolves the potential.
+void add_lengths(const PotentialShape& shape, bool wall, const std::string& named, LimitList& limits) {
+  constexpr RemediedBy resolution = RemediedBy::resolution;
+  if (!shape.well) {
+    limits.above("range of the repulsion of " + named + " in lattice spacings", shape.range, least_gap,
+                 std::string("raise the resolution or the range: nearer than that the lattice ") +
+                     (wall ? "holds a membrane to the wall" : "moves two membranes together") +
+                     ", whatever acts between them",
+                 resolution);
+    return;
+  }
+  limits.above(
+      "equilibrium gap of " + named + " in lattice spacings", shape.well->distance, least_gap,
+      std::string("raise the resolution or move the well outwards: where the lattice does not resolve the gap, "
+                  "membranes ") +
+          (wall ? "never leave the wall" : "never separate"),
+      resolution);
+  limits.above("width of the well of " + named + " in lattice spacings", shape.well->width(),
+               wall ? narrowest_well_of_a_wall : narrowest_well,
+               std::string("raise the resolution or take a wider well: the corners of membranes catch ") +
+                   (wall ? "in" : "on each other in") + " a narrow one",
+               resolution);
+}
+
+}  // namespace
+
+void add_potentials(const LimitedStage& of, LimitList& limits) {
+  const std::vector<PlannedModel>& interactions = of.plan.interactions;
+  for (std::size_t i = 0; i < interactions.size(); ++i) {
+    if (!of.facts.models->potentials[i]) continue;  // left out; or its stiffness is a matter of what it remembers
+    const PotentialShape& shape = *of.facts.models->potentials[i];
+    const PlannedModel& model = interactions[i];
+    const auto same = [&](const PlannedModel& other) { return other.manifest->id == model.manifest->id; };
+    const bool several = std::count_if(interactions.begin(), interactions.end(), same) > 1;
+    const std::string named = model.manifest->id + (several ? " (" + of.plan.owner_of(model) + ")" : "");
+    limits.below("contact stiffness of " + named + " in lattice units" + of.where, shape.stiffness,
+                 interpolate(contact_limit, of.scene.numerics.tau),
+                 of.lower + ", with which the lattice stiffness falls", of.density);
+    const bool resolved_well = shape.well && shape.well->distance >= least_gap;
+    if (resolved_well) {
+      limits.below("compression by the attraction of " + named + of.where, 3 * shape.well->attraction,
+                   largest_compression_by_attraction,
+                   of.lower + ": the lattice's fluid gives way to it, and cells leak while they snap together",
+                   of.density);
+    }
+    if (of.stage.index != 0) continue;
+    const bool wall = of.scene.interactions[i].with_wall(), self = of.scene.interactions[i].with_self();
+    if (resolved_well && !wall && !self && of.scene.cells.size() > 1) add_depth(of, i, named, *shape.well, limits);
+    add_lengths(shape, wall, named, limits);
+  }
+}
+
+void add_gaps(const LimitedStage& of, LimitList& limits) {
+  const StartGaps gaps = start_gaps(of.scene);
+  limits.above(
+      "gap between cells, as placed, in lattice spacings", gaps.cells, least_gap_at_start,
+      "move them apart, or raise the resolution: nearer than that the lattice moves two membranes together, and "
+      "what acts between them throws them apart or never parts them");
+  limits.above("gap between cells, as placed, and a wall in lattice spacings", gaps.walls, least_gap_at_start,
+               "move cells away from the wall, or raise the resolution: nearer than that the lattice holds them to it");
+  limits.above("gap between cells, as placed, and the wall of the tube in lattice spacings", gaps.tube,
+               least_gap_to_tube,
+               "raise the resolution, or move cells towards the axis: nearer than that they move too fast, on the wall "
+               "by a third of a spacing times the shear rate",
+               RemediedBy::resolution);
+}
+
+void add_resolution(const LimitedStage& of, LimitList& limits) {
+  limits.above("cell radius in lattice spacings", shape::smallest_radius(of.scene) / of.stage.units.length,
+               least_radii(of.scene, membrane_coupling(of.scene.numerics)).run,
+               "raise the resolution; results are converged from about 20", RemediedBy::resolution);
+  double shortest = 1e300, longest = 0;
+  for (const scene::CellPlacement& cell : of.scene.cells) {
+    const double segment = of.plan.facts.types[cell.type].node_spacing / of.stage.units.length;
+    shortest = std::min(shortest, segment);
+    longest = std::max(longest, segment);
+  }
+  const std::string piece = of.in_space ? "edge" : "segment", pieces = of.in_space ? "triangles" : "segments";
+  const std::string best = of.in_space ? "edges of about one spacing" : "about one for each spacing";
+  limits.above("shortest " + piece + " in lattice spacings", shortest, shortest_segment,
+               "take fewer " + pieces + "; " + best + (of.in_space ? " are best" : " is best"));
+  limits.below("longest " + piece + " in lattice spacings", longest, longest_segment,
+               "take more " + pieces + ", " + best + ": fluid leaks between nodes that lie far apart");
+}
+
+}  // namespace rouleau::plan

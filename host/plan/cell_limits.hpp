@@ -1,0 +1,56 @@
+// The limits that cells bring in: how far the fluid gives way to them, how stiff they are, what acts between them, where they lie.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "limits.hpp"
+#include "plan.hpp"
+
+namespace rouleau::plan {
+
+/// Values against limits, of one stage after the other.
+class LimitList {
+ public:
+  void begin_stage(int stage) { stage_ = stage; }
+  /// A value that must stay below its limit, or above. One that is not finite is none.
+  void below(const std::string& name, double value, double limit, const std::string& remedy,
+             RemediedBy remedied_by = RemediedBy::nothing, double power_of_density = 1);
+  void above(const std::string& name, double value, double limit, const std::string& remedy,
+             RemediedBy remedied_by = RemediedBy::nothing);
+  /// Sharpest first.
+  [[nodiscard]] std::vector<Limit> sorted() &&;
+
+ private:
+  int stage_ = 0;
+  std::vector<Limit> limits_;
+};
+
+/// What the limits of a stage are found from.
+struct LimitedStage {
+  LimitedStage(const Plan& of, const scene::StageSetting& setting);
+  const Plan& plan;
+  const scene::Scene& scene;
+  const scene::StageSetting& stage;
+  const StageFacts& facts;
+  bool in_space;
+  double most_viscous_tau;   ///< relaxation time of the most viscous layer
+  std::string where, lower;  ///< " (stage shear)", "lower numerics.density_factor"
+  RemediedBy density;        ///< nothing where the scene gives the stage a factor, which is not auto's to change
+};
+
+/// Whether a run is about when things happen, which is late by as much as the flow: cells that turn over or meet others. A round
+/// cell alone becomes steady and forgets its start. `auto` is told which.
+bool reports_moments(const Plan& plan);
+
+void add_compression(const LimitedStage& of, LimitList& limits);
+void add_leak(const LimitedStage& of, LimitList& limits);
+void add_travel(const LimitedStage& of, LimitList& limits);
+void add_stiffness(const LimitedStage& of, LimitList& limits);
+void add_slip_and_prestress(const LimitedStage& of, LimitList& limits);
+void add_potentials(const LimitedStage& of, LimitList& limits);
+/// Of the first stage alone.
+void add_gaps(const LimitedStage& of, LimitList& limits);
+void add_resolution(const LimitedStage& of, LimitList& limits);
+
+}  // namespace rouleau::plan

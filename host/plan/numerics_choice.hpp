@@ -1,0 +1,41 @@
+// What "numerics": "auto" has chosen for a scene.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "json/json.hpp"
+
+namespace rouleau::plan {
+
+/// Parts of the error that is expected of a result, relative.
+struct ErrorShares {
+  double resolution = 0;  ///< of the lattice
+  double inertia = 0;     ///< of the fluid that is simulated denser than it is
+  double start = 0;       ///< of that fluid's start from rest
+  [[nodiscard]] double total() const { return resolution + inertia + start; }
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE_WITH_DEFAULT(ErrorShares, resolution, inertia, start)
+};
+
+struct ChosenValue {
+  std::string pointer;  ///< into the scene
+  nlohmann::json value;
+  std::string why;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(ChosenValue, pointer, value, why)
+};
+
+/// What was chosen for a scene that leaves its numerics open, and why.
+struct NumericsChoice {
+  double target;  ///< relative error that was asked for
+  bool steady;    ///< asked for the steady state, not for the motion
+  ErrorShares expected;
+  std::vector<ChosenValue> values;  ///< what the scene leaves open
+  std::string doubt;                ///< why the target may not be met, or only at a price; empty: it should
+  [[nodiscard]] bool has(const std::string& pointer) const {
+    return std::any_of(values.begin(), values.end(),
+                       [&](const ChosenValue& value) { return value.pointer == pointer; });
+  }
+};
+
+}  // namespace rouleau::plan
