@@ -606,14 +606,6 @@ bool leaves_numerics_open(const Json& numerics) {
 
 }  // namespace
 
-Json to_json(const std::optional<NumericsChoice>& choice) {
-  if (!choice) return {};
-  return {{"target_error", choice->target},
-          {"of", choice->steady ? "steady" : "motion"},
-          {"values", choice->values},
-          {"expected_error", choice->expected}};
-}
-
 std::optional<NumericsChoice> fill_in_numerics(json::Document& document, const NumericsBounds& bounds) {
   if (!leaves_numerics_open(document.root().value("numerics", Json()))) return std::nullopt;
   spell_out_numerics(document);

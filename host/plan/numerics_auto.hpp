@@ -20,9 +20,6 @@ struct Scene;
 }  // namespace rouleau::scene
 namespace rouleau::plan {
 
-/// Null where nothing was left open.
-nlohmann::json to_json(const std::optional<NumericsChoice>& choice);
-
 /// What the limits of a plan ask for beyond the target error, and what only a plan knows, for it has opened the plugins.
 struct NumericsBounds {
   std::map<std::size_t, double> most_density_factor = {};  ///< by stage

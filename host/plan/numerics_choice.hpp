@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,5 +38,14 @@ struct NumericsChoice {
                        [&](const ChosenValue& value) { return value.pointer == pointer; });
   }
 };
+
+/// Null where nothing was left open.
+inline nlohmann::json to_json(const std::optional<NumericsChoice>& choice) {
+  if (!choice) return {};
+  return {{"target_error", choice->target},
+          {"of", choice->steady ? "steady" : "motion"},
+          {"values", choice->values},
+          {"expected_error", choice->expected}};
+}
 
 }  // namespace rouleau::plan

@@ -18,7 +18,7 @@ const Catalog& plugins() {
   return catalog;
 }
 
-PotentialShape shape(const char* id, const std::vector<double>& values) {
+PotentialShape shape_of(const char* id, const std::vector<double>& values) {
   return find_shape(make_potential(plugins().find(ModelKind::interaction, id, {}), values, {{1, 1, 1}, 1.0, false}));
 }
 
@@ -39,7 +39,7 @@ TEST_CASE("the well of a Morse potential is found wherever it lies and however n
     for (const double sharpness : {1.0, 30.0, 1000.0, 1e5}) {
       const double decay = sharpness / distance;
       CAPTURE(distance, decay);
-      const PotentialShape found = shape("morse", {1.3, decay, distance, 36});
+      const PotentialShape found = shape_of("morse", {1.3, decay, distance, 36});
       REQUIRE(found.well);
       CHECK(found.range == 36);
       CHECK(found.well->distance == Approx(distance).epsilon(1e-12));
@@ -52,7 +52,7 @@ TEST_CASE("the well of a Morse potential is found wherever it lies and however n
 }
 
 TEST_CASE("a Lennard-Jones well is as deep as its parameter says and 0.37 of its distance wide") {
-  const PotentialShape found = shape("lennard-jones", {1.3, 2.5, 36});
+  const PotentialShape found = shape_of("lennard-jones", {1.3, 2.5, 36});
   REQUIRE(found.well);
   CHECK(found.well->distance == Approx(2.5).epsilon(1e-12));
   CHECK(found.well->depth == Approx(1.3).epsilon(1e-12));
@@ -63,11 +63,11 @@ TEST_CASE("a Lennard-Jones well is as deep as its parameter says and 0.37 of its
 }
 
 TEST_CASE("a repulsion has a range and no well, and an attraction down to contact has its well there") {
-  const PotentialShape repulsion = shape("repulsion", {1.3, 5});
+  const PotentialShape repulsion = shape_of("repulsion", {1.3, 5});
   CHECK(!repulsion.well);
   CHECK(repulsion.range == 5);
   CHECK(repulsion.stiffness == Approx(3 * 1.3 / 25).epsilon(0.01));
-  const PotentialShape attraction = shape("morse", {1.3, 0.4, 1e-9, 36});
+  const PotentialShape attraction = shape_of("morse", {1.3, 0.4, 1e-9, 36});
   REQUIRE(attraction.well);
   CHECK(attraction.well->distance == 0);
 }
