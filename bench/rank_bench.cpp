@@ -212,7 +212,7 @@ class Part {
     constexpr double way = 3;  // spacings, there and back
     const long there = std::lround(std::ceil(way / speed_));
     const double by = steps_++ / there % 2 == 0 ? speed_ : -speed_;
-    for (int i = cells_.cells[runner_].first; i < cells_.cells[runner_].end(); ++i) cells_.x[i] += by;
+    for (int i = cells_.cells[runner_].first; i < cells_.cells[runner_].end(); ++i) cells_.position[0][i] += by;
     cells_.largest_step[runner_] += speed_;
   }
 
@@ -242,8 +242,8 @@ Outcome<T> outcome(Part<T, Set>& part, const core::Box<Set::dimension>& block, c
     if (owned.empty()) out.owned.push_back(cells.owns(c) ? 1 : 0);
     if (out.owned[c] == 0) continue;
     for (int i = cells.cells[c].first; i < cells.cells[c].end(); ++i) {
-      const std::vector<double>* const places[] = {&cells.x, &cells.y, &cells.z};
-      for (int k = 0; k < D; ++k) out.places.push_back((*places[k])[i]);
+      const auto& places = cells.position;
+      for (int k = 0; k < D; ++k) out.places.push_back(places[k][i]);
     }
   }
   core::Fluid<T, Set>& fluid = part.solver().fluid();

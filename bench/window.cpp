@@ -112,15 +112,9 @@ void append(plan::Cells<D>& cells, const plan::Cells<D>& one, const std::array<d
   core::CellRange range = one.cells.front();
   range.first = cells.node_count();
   cells.cells.push_back(range);
-  std::vector<double>* const to[] = {&cells.x, &cells.y, &cells.z};
-  const std::vector<double>* const from[] = {&one.x, &one.y, &one.z};
-  std::vector<double>* const other[] = {&cells.force_x,    &cells.force_y,    &cells.force_z,
-                                        &cells.velocity_x, &cells.velocity_y, &cells.velocity_z};
   for (int k = 0; k < D; ++k) {
-    for (const double place : *from[k]) to[k]->push_back(place + by[k]);
-  }
-  for (int k = 0; k < D; ++k) {
-    for (const int what : {k, 3 + k}) other[what]->resize(cells.x.size(), 0.0);
+    for (const double place : one.position[k]) cells.position[k].push_back(place + by[k]);
+    for (auto* arrays : {&cells.force, &cells.velocity}) (*arrays)[k].resize(cells.position[k].size(), 0.0);
   }
 }
 

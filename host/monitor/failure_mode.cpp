@@ -21,7 +21,7 @@ double distance_to(const core::Membranes& m, const core::CellRange& cell, const 
   double nearest = std::numeric_limits<double>::infinity();
   for (int i = cell.first; i < cell.end(); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    double dx = m.x[k] - place[0], dy = m.y[k] - place[1];
+    double dx = m.position[0][k] - place[0], dy = m.position[1][k] - place[1];
     dx -= domain.period(0) * std::round(dx / domain.period(0));
     if (domain.periodic[1]) dy -= domain.period(1) * std::round(dy / domain.period(1));
     nearest = std::fmin(nearest, std::hypot(dx, dy));  // a NaN is farther than anything
@@ -83,7 +83,7 @@ FailureMode wave_of(int cell, const core::Membranes& m, const GrowthWatch& growt
   const auto part = [&range](const std::vector<double>& values) {
     return std::span(values).subspan(static_cast<std::size_t>(range.first), static_cast<std::size_t>(range.count));
   };
-  read(find_wave(part(m.x), part(m.y), part(m.velocity_x), part(m.velocity_y)), step);
+  read(find_wave(part(m.position[0]), part(m.position[1]), part(m.velocity[0]), part(m.velocity[1])), step);
   return mode;
 }
 

@@ -31,10 +31,10 @@ void GrowthWatch::note(long step, const core::CellNodes& cells, const core::Rank
     return core::of_rank(ranks, fastest.rank,
                          std::vector<double>(values.begin() + cell.first, values.begin() + cell.end()));
   };
-  excursion.x = part(cells.x);
-  excursion.y = part(cells.y);
-  excursion.velocity_x = part(cells.velocity_x);
-  excursion.velocity_y = part(cells.velocity_y);
+  excursion.x = part(cells.position[0]);
+  excursion.y = part(cells.position[1]);
+  excursion.velocity_x = part(cells.velocity[0]);
+  excursion.velocity_y = part(cells.velocity[1]);
   excursions_.push_back(std::move(excursion));
   level_ = 2 * speed;
 }

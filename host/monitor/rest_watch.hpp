@@ -22,9 +22,9 @@ class RestWatch {
     step_ = step;
     old_ = {};
     for_places(cells, ghosts, [this](Range, const core::CellNodes& some) {
-      old_.x.insert(old_.x.end(), some.x.begin(), some.x.end());
-      old_.y.insert(old_.y.end(), some.y.begin(), some.y.end());
-      old_.z.insert(old_.z.end(), some.z.begin(), some.z.end());
+      old_.x.insert(old_.x.end(), some.position[0].begin(), some.position[0].end());
+      old_.y.insert(old_.y.end(), some.position[1].begin(), some.position[1].end());
+      old_.z.insert(old_.z.end(), some.position[2].begin(), some.position[2].end());
     });
   }
   /// First step at which a window of so many steps has ended.
@@ -46,7 +46,8 @@ class RestWatch {
     const auto fit = [&](const std::vector<double>& old, const std::vector<double>& now) {
       return old.size() == now.size() || (!asked && old.empty());
     };
-    return step_ >= 0 && fit(old_.x, cells.x) && fit(old_.y, cells.y) && fit(old_.z, cells.z);
+    return step_ >= 0 && fit(old_.x, cells.position[0]) && fit(old_.y, cells.position[1]) &&
+           fit(old_.z, cells.position[2]);
   }
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RestWatch, step_, old_)
 
@@ -56,17 +57,17 @@ class RestWatch {
   static void for_places(const core::CellNodes& cells, const core::GhostCells<D>* ghosts, Function function) {
     const auto add = [&](int cell, std::vector<double>& values) {
       for (int i = cells.cells[cell].first; i < cells.cells[cell].end(); ++i) {
-        values.push_back(cells.x[i]);
-        values.push_back(cells.y[i]);
-        if (D == 3) values.push_back(cells.z[i]);
+        values.push_back(cells.position[0][i]);
+        values.push_back(cells.position[1][i]);
+        if (D == 3) values.push_back(cells.position[2][i]);
       }
     };
     core::give_in_order<double>(ghosts, cells, add, [&](Range run, const std::vector<double>& values) {
       core::CellNodes some;
       for (std::size_t i = 0; i < values.size(); i += D) {
-        some.x.push_back(values[i]);
-        some.y.push_back(values[i + 1]);
-        if (D == 3) some.z.push_back(values[i + 2]);
+        some.position[0].push_back(values[i]);
+        some.position[1].push_back(values[i + 1]);
+        if (D == 3) some.position[2].push_back(values[i + 2]);
       }
       function(Range{cells.cells[run.begin].first, cells.cells[run.end - 1].end()}, some);
     });

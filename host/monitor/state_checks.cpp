@@ -89,12 +89,13 @@ std::optional<Failure> check_stretch(const core::Membranes& membranes, const sce
     const std::vector<double>& rest_length = membranes.type_of(cell).rest_length;
     for (int i = cell.first; i < cell.end(); ++i) {
       const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(cell.next(i));
-      const double dx = membranes.x[to] - membranes.x[from], dy = membranes.y[to] - membranes.y[from];
+      const double dx = membranes.position[0][to] - membranes.position[0][from],
+                   dy = membranes.position[1][to] - membranes.position[1][from];
       const double stretch = std::hypot(dx, dy) / (placed * rest_length[i - cell.first]);
       if (stretch <= limit && stretch * limit >= 1) continue;
       Failure found = uneven_failure("a segment", k, stretch, limit, stage);
-      found.place = {units::coordinate(membranes.x[from], units.length),
-                     units::coordinate(membranes.y[from], units.length)};
+      found.place = {units::coordinate(membranes.position[0][from], units.length),
+                     units::coordinate(membranes.position[1][from], units.length)};
       return found;
     }
   }
@@ -224,7 +225,7 @@ std::optional<Failure> check_cells(observe::Observer& observer, const scene::Sta
   if (const auto crossing = core::find_crossing(surfaces, scene::lattice_domain<3>(scene))) {
     const auto node = static_cast<std::size_t>(crossing->node);
     crosses = at(crossing_failure(crossing->cell, crossing->other, false, plan, setting),
-                 {surfaces.x[node], surfaces.y[node], surfaces.z[node]});
+                 {surfaces.position[0][node], surfaces.position[1][node], surfaces.position[2][node]});
     order = {-crossing->depth, static_cast<double>(crossing->cell)};
   }
   return first_failure(ranks, crosses, order);

@@ -99,7 +99,8 @@ CellFreeLayer cell_free_layer(const core::Membranes& membranes, const core::Doma
     const core::CellRange& cell = membranes.cells[c];
     for (int i = cell.first; i < cell.end(); ++i) {
       const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(cell.next(i));
-      at_whole_numbers(membranes.x[from], membranes.y[from], membranes.x[to], membranes.y[to], domain.size[0],
+      at_whole_numbers(membranes.position[0][from], membranes.position[1][from], membranes.position[0][to],
+                       membranes.position[1][to], domain.size[0],
                        [&](int x, double y, double other) { columns.meet(domain.wrapped(0, x), y, other); });
     }
   }

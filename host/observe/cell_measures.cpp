@@ -19,12 +19,12 @@ double long_axis(double angle, double deformation) { return deformation > rounde
 double wall_gap(const core::Surfaces& surfaces, int cell, const core::Domain<3>& domain, double tube_radius) {
   if (tube_radius > 0) return tube_radius - core::farthest_from_axis(surfaces, cell, domain);
   const core::CellRange& range = surfaces.cells[cell];
-  const std::vector<double>* const along[] = {&surfaces.x, &surfaces.y, &surfaces.z};
+  const auto& along = surfaces.position;
   double gap = std::numeric_limits<double>::infinity();
   for (int axis = 1; axis < 3; ++axis) {
     if (!domain.walled(axis)) continue;
     const auto [least, most] =
-        std::minmax_element(along[axis]->begin() + range.first, along[axis]->begin() + range.end());
+        std::minmax_element(along[axis].begin() + range.first, along[axis].begin() + range.end());
     gap = std::min({gap, *least + 0.5, domain.size[axis] - 0.5 - *most});
   }
   return std::isinf(gap) ? std::nan("") : gap;

@@ -16,8 +16,8 @@ double given_away(const core::CellNodes& m, const core::Ranks<D>& ranks) {
   return sum_over(m, ranks, [&](int c) {
     double power = 0;
     for (int i = m.cells[c].first; i < m.cells[c].end(); ++i) {
-      power += m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
-      if (D == 3) power += m.force_z[i] * m.velocity_z[i];
+      power += m.force[0][i] * m.velocity[0][i] + m.force[1][i] * m.velocity[1][i];
+      if (D == 3) power += m.force[2][i] * m.velocity[2][i];
     }
     return power;
   });

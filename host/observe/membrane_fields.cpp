@@ -58,9 +58,9 @@ MembraneSnapshot observe_membranes(core::Solver<T, Set>& solver, const units::La
   const double spacing = units.length, tension = units.to_si(1, units::dimension::tension);
   field("points", "m", Set::dimension, [&cells, spacing](int cell, std::vector<double>& values) {
     for (int i = cells.cells[cell].first; i < cells.cells[cell].end(); ++i) {
-      values.push_back(units::coordinate(cells.x[i], spacing));
-      values.push_back(units::coordinate(cells.y[i], spacing));
-      if (in_space) values.push_back(units::coordinate(cells.z[i], spacing));
+      values.push_back(units::coordinate(cells.position[0][i], spacing));
+      values.push_back(units::coordinate(cells.position[1][i], spacing));
+      if (in_space) values.push_back(units::coordinate(cells.position[2][i], spacing));
     }
   });
   field("tension", "N/m", 1, [&cells, tasks, tension](int cell, std::vector<double>& values) {

@@ -100,11 +100,11 @@ double Observer::momentum_residual(const core::CellNodes& m, const std::array<do
   const auto [net_x, net_y, net_z, magnitudes] = sums_over<4>(m, ranks, [&](int c) {
     std::array<double, 4> of_cell{};
     for (int i = m.cells[c].first; i < m.cells[c].end(); ++i) {
-      const double along_z = m.z.empty() ? 0 : m.force_z[i];
-      of_cell[0] += m.force_x[i];
-      of_cell[1] += m.force_y[i];
+      const double along_z = m.position[2].empty() ? 0 : m.force[2][i];
+      of_cell[0] += m.force[0][i];
+      of_cell[1] += m.force[1][i];
       of_cell[2] += along_z;
-      of_cell[3] += std::hypot(std::hypot(m.force_x[i], m.force_y[i]), along_z);
+      of_cell[3] += std::hypot(std::hypot(m.force[0][i], m.force[1][i]), along_z);
     }
     return of_cell;
   });

@@ -15,7 +15,7 @@ double stress_of_forces(const core::CellNodes& nodes, int cell, const scene::Sce
   const double height = scene.domain.nodes[1], middle = (height - 1) / 2;
   double stress = across_images ? height * across_images(cell) : 0;
   const core::CellRange& range = nodes.cells[cell];
-  for (int i = range.first; i < range.end(); ++i) stress -= nodes.force_x[i] * (nodes.y[i] - middle);
+  for (int i = range.first; i < range.end(); ++i) stress -= nodes.force[0][i] * (nodes.position[1][i] - middle);
   return stress;
 }
 
@@ -30,8 +30,8 @@ double particle_stress(const core::Membranes& m, const scene::Scene& scene, doub
     for (int i = cell.first; i < cell.end(); ++i) {
       const auto k = static_cast<std::size_t>(i), n = static_cast<std::size_t>(cell.next(i));
       // Outward normal times length of segment i, nodes counter-clockwise.
-      const double nx = m.y[n] - m.y[k], ny = m.x[k] - m.x[n];
-      const double ux = (m.velocity_x[k] + m.velocity_x[n]) / 2, uy = (m.velocity_y[k] + m.velocity_y[n]) / 2;
+      const double nx = m.position[1][n] - m.position[1][k], ny = m.position[0][k] - m.position[0][n];
+      const double ux = (m.velocity[0][k] + m.velocity[0][n]) / 2, uy = (m.velocity[1][k] + m.velocity[1][n]) / 2;
       stress += viscosity * (ratio - 1) * (ux * ny + uy * nx);
     }
     return stress;
@@ -52,7 +52,7 @@ double particle_stress(const core::Surfaces& s, const scene::Scene& scene, doubl
     for (const auto& corners : mesh.triangles()) {
       double ux = 0, uy = 0;
       for (const int node : corners)
-        ux += s.velocity_x[cell.first + node] / 3, uy += s.velocity_y[cell.first + node] / 3;
+        ux += s.velocity[0][cell.first + node] / 3, uy += s.velocity[1][cell.first + node] / 3;
       stress += viscosity * (ratio - 1) * (ux * twice_area[t].y() + uy * twice_area[t].x()) / 2;
       ++t;
     }

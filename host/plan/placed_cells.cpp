@@ -157,7 +157,7 @@ class OutlineChecker {
     for (int i = b.first; i < b.end(); ++i) depth = std::max(depth, core::depth_inside(membranes_, a, node(i) + move));
     return depth;
   }
-  [[nodiscard]] Eigen::Vector2d node(int i) const { return {membranes_.x[i], membranes_.y[i]}; }
+  [[nodiscard]] Eigen::Vector2d node(int i) const { return {membranes_.position[0][i], membranes_.position[1][i]}; }
 
   const scene::Scene& scene_;
   const core::Membranes& membranes_;

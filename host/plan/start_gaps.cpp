@@ -53,10 +53,10 @@ void measure(const scene::Scene& scene, StartGaps& gaps) {
       return;
     }
   }
-  const std::array<const std::vector<double>*, 3> places{&cells.x, &cells.y, &cells.z};
+  const auto& places = cells.position;
   for (int k = 1; k < D; ++k) {
     if (!domain.walled(k)) continue;
-    const auto [least, most] = std::minmax_element(places[k]->begin(), places[k]->end());
+    const auto [least, most] = std::minmax_element(places[k].begin(), places[k].end());
     const double gap = std::min(*least + 0.5, domain.size[k] - 0.5 - *most);
     if (gap < reach) gaps.walls = std::min(gaps.walls, gap);
   }

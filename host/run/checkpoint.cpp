@@ -20,15 +20,17 @@ std::string population_name(int q) { return "/populations/" + std::to_string(q);
 std::string state_name(std::size_t k) { return "/membranes/state/" + std::to_string(k); }
 
 constexpr std::array places{"/membranes/x", "/membranes/y", "/membranes/z"};
+constexpr std::array velocities{"/membranes/velocity_x", "/membranes/velocity_y", "/membranes/velocity_z"};
+constexpr std::array indicator_places{"/indicator/x", "/indicator/y", "/indicator/z"};
 
 /// Arrays of the cells that have a value for each node, or for each cell.
 template <class Cells>
 auto arrays(Cells& m) {
-  std::vector all{std::pair{places[0], &m.x}, std::pair{places[1], &m.y},
-                  std::pair{"/membranes/velocity_x", &m.velocity_x}, std::pair{"/membranes/velocity_y", &m.velocity_y},
+  std::vector all{std::pair{places[0], &m.position[0]}, std::pair{places[1], &m.position[1]},
+                  std::pair{velocities[0], &m.velocity[0]}, std::pair{velocities[1], &m.velocity[1]},
                   std::pair{"/membranes/largest_step", &m.largest_step}};
-  if (!m.z.empty())
-    all.insert(all.end(), {std::pair{places[2], &m.z}, std::pair{"/membranes/velocity_z", &m.velocity_z}});
+  if (!m.position[2].empty())
+    all.insert(all.end(), {std::pair{places[2], &m.position[2]}, std::pair{velocities[2], &m.velocity[2]}});
   return all;
 }
 
@@ -52,7 +54,7 @@ std::vector<core::BoundingBox<D>> read_boxes(const files::CheckpointReader& read
   std::vector<core::BoundingBox<D>> boxes;
   boxes.reserve(nodes.cells.size());
   core::CellNodes some;
-  std::vector<double>* const along[] = {&some.x, &some.y, &some.z};
+  auto& along = some.position;
   for (int c = 0; c < nodes.cell_count();) {
     const int first = nodes.cells[c].first;
     some.cells.clear();
@@ -62,9 +64,9 @@ std::vector<core::BoundingBox<D>> read_boxes(const files::CheckpointReader& read
     }
     const int count = some.cells.back().end();
     for (int k = 0; k < D; ++k) {
-      along[k]->resize(static_cast<std::size_t>(count));
-      reader.part(places[k], nodes.x.size(), static_cast<std::size_t>(first), static_cast<std::size_t>(first + count),
-                  along[k]->data());
+      along[k].resize(static_cast<std::size_t>(count));
+      reader.part(places[k], nodes.position[0].size(), static_cast<std::size_t>(first),
+                  static_cast<std::size_t>(first + count), along[k].data());
     }
     for (const core::BoundingBox<D>& box : core::boxes_of<D>(some)) boxes.push_back(box);
   }
@@ -102,7 +104,7 @@ class CellArrays {
   /// A number of each node.
   template <class Values>
   void of_nodes(const std::string& path, const Values& values) {
-    write(path, cells_.x.size(), [&](int c, std::vector<double>& of_cell) {
+    write(path, cells_.position[0].size(), [&](int c, std::vector<double>& of_cell) {
       const core::CellRange& cell = cells_.cells[c];
       of_cell.insert(of_cell.end(), values.data() + cell.first, values.data() + cell.end());
     });
@@ -228,9 +230,7 @@ Json save(files::CheckpointWriter* writer, core::Solver<T, Set>& solver) {
   if (auto* const tasks = solver.cell_tasks()) {
     const core::DisplacementWatch::Memory& memory = tasks->viscosity_field().memory();
     CellArrays<Set::dimension> to(writer, solver.cells(), tasks->ghosts());
-    to.of_nodes("/indicator/x", memory.x);
-    to.of_nodes("/indicator/y", memory.y);
-    if (Set::dimension == 3) to.of_nodes("/indicator/z", memory.z);
+    for (int k = 0; k < Set::dimension; ++k) to.of_nodes(indicator_places[k], memory.position[k]);
     to.of_cells("/indicator/limit", memory.limit);
     to.of_cells("/indicator/bound", memory.bound);
   }
@@ -266,7 +266,7 @@ void restore_cells(const files::CheckpointReader& reader, const Json& saved, Cel
   m.state.clear();
   for (const Json& description : saved.at("state")) {
     m.state.push_back(element_state(description));
-    m.state.back().value.resize(m.x.size());
+    m.state.back().value.resize(m.position[0].size());
     read(reader, state_name(m.state.size() - 1), known, m.state.back().value);
   }
   if (std::is_same_v<Cells, core::Membranes> || saved.contains("contacts"))
@@ -353,9 +353,7 @@ Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader
       core::DisplacementWatch::Memory& memory = solver.viscosity;
       memory = core::DisplacementWatch::Memory(cells);
       const std::vector<Range> known = cells.known_nodes();
-      if (Set::dimension == 3) read(*reader, "/indicator/z", known, memory.z);
-      read(*reader, "/indicator/x", known, memory.x);
-      read(*reader, "/indicator/y", known, memory.y);
+      for (int k = Set::dimension - 1; k >= 0; --k) read(*reader, indicator_places[k], known, memory.position[k]);
       read(*reader, "/indicator/limit", memory.limit);
       read(*reader, "/indicator/bound", memory.bound);
     }

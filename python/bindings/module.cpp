@@ -100,9 +100,9 @@ class Session {
 
 /// The components of a vector at all nodes; in two dimensions the last has none.
 using Components = std::array<std::vector<double>*, 3>;
-Components places(core::CellNodes& nodes) { return {&nodes.x, &nodes.y, &nodes.z}; }
-Components velocities(core::CellNodes& nodes) { return {&nodes.velocity_x, &nodes.velocity_y, &nodes.velocity_z}; }
-Components forces(core::CellNodes& nodes) { return {&nodes.force_x, &nodes.force_y, &nodes.force_z}; }
+Components places(core::CellNodes& nodes) { return {&nodes.position[0], &nodes.position[1], &nodes.position[2]}; }
+Components velocities(core::CellNodes& nodes) { return {&nodes.velocity[0], &nodes.velocity[1], &nodes.velocity[2]}; }
+Components forces(core::CellNodes& nodes) { return {&nodes.force[0], &nodes.force[1], &nodes.force[2]}; }
 
 /// Nodes times two, of two arrays that lie anywhere: one step along the second axis leads from the one to the other.
 py::array pairs(const py::object& owner, const Components& of) {
@@ -143,7 +143,7 @@ std::function<void()> asking(const py::object& callback, Simulation& simulation)
   }
   return [callback, &nodes] {
     const py::gil_scoped_acquire interpreter;
-    py::array_t<double> added({static_cast<py::ssize_t>(nodes.x.size()), py::ssize_t{3}});
+    py::array_t<double> added({static_cast<py::ssize_t>(nodes.position[0].size()), py::ssize_t{3}});
     std::fill_n(added.mutable_data(), added.size(), 0.0);
     callback(added);
     const auto from = added.unchecked<2>();

@@ -66,8 +66,8 @@ class Doublet {
     Eigen::VectorXd height(count);
     for (Eigen::Index k = 0; k < count; ++k) {
       const int i = contacts[k].node;
-      const double x = cells_.x[i] - box / 2.0, z = cells_.z[i] - box / 2.0;
-      height[k] = cells_.y[i];
+      const double x = cells_.position[0][i] - box / 2.0, z = cells_.position[2][i] - box / 2.0;
+      height[k] = cells_.position[1][i];
       terms.row(k) << 1, x, z, x * x + z * z, x * x - z * z, 2 * x * z, x * (x * x + z * z), z * (x * x + z * z),
           x * (x * x - 3 * z * z), z * (3 * x * x - z * z);
     }
@@ -92,7 +92,7 @@ class Doublet {
     for (const int side : {-1, 1})
       add_cell(cells, 0, {box / 2.0, box / 2.0 + side * (top + well.distance / 2), box / 2.0});
     for (int i = 0; i < cells.node_count(); ++i)
-      cells.y[i] += bent * radius * std::sin(std::numbers::pi * (cells.x[i] - box / 2.0) / radius);
+      cells.position[1][i] += bent * radius * std::sin(std::numbers::pi * (cells.position[0][i] - box / 2.0) / radius);
     return cells;
   }
 

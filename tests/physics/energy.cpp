@@ -37,11 +37,11 @@ void stretch_to_ellipse(SolverBench& bench, double amplitude) {
   Membranes& m = bench.membranes;
   const Eigen::Vector2d c = centroid(m, m.cells[0]);
   const double radius = 4e-6 / bench.plan.stages[0].units.length;
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    const double angle = std::atan2(m.y[i] - c.y(), m.x[i] - c.x());
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    const double angle = std::atan2(m.position[1][i] - c.y(), m.position[0][i] - c.x());
     const double r = radius * (1 + amplitude * std::cos(2 * angle));
-    m.x[i] = c.x() + r * std::cos(angle);
-    m.y[i] = c.y() + r * std::sin(angle);
+    m.position[0][i] = c.x() + r * std::cos(angle);
+    m.position[1][i] = c.y() + r * std::sin(angle);
   }
 }
 

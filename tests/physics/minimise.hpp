@@ -77,8 +77,8 @@ inline Eigen::VectorXd place_of(const core::Surfaces& surfaces) {
 }
 inline void move_to(const Eigen::VectorXd& place, core::Surfaces& surfaces) {
   const Eigen::Index n = surfaces.node_count();
-  std::vector<double>* const positions[] = {&surfaces.x, &surfaces.y, &surfaces.z};
-  for (int k = 0; k < 3; ++k) Eigen::Map<Eigen::VectorXd>(positions[k]->data(), n) = place.segment(k * n, n);
+  auto& positions = surfaces.position;
+  for (int k = 0; k < 3; ++k) Eigen::Map<Eigen::VectorXd>(positions[k].data(), n) = place.segment(k * n, n);
 }
 /// Adds the gradient of the energy that the nodes' forces belong to.
 inline void add_gradient(const core::Surfaces& surfaces, Eigen::VectorXd& gradient) {

@@ -57,8 +57,8 @@ TEST_CASE("a capsule lowers the flow rate of a channel by what the reciprocal th
   bench.forces();
   fluid.settle();
   double power = 0;
-  for (std::size_t i = 0; i < bench.membranes.x.size(); ++i) {
-    power += bench.membranes.force_x[i] * alone(bench.membranes.y[i]);
+  for (std::size_t i = 0; i < bench.membranes.position[0].size(); ++i) {
+    power += bench.membranes.force[0][i] * alone(bench.membranes.position[1][i]);
   }
   const double expected = power / (stage.body_force_x * length);
   const double rate = flow_rate(fluid), undisturbed = stage.body_force_x * std::pow(height, 3) / (12 * viscosity);

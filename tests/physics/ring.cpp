@@ -115,10 +115,10 @@ TEST_CASE("an elliptic disturbance of a pre-stretched ring decays as the boundar
   Membranes& m = bench.membranes;
   const Eigen::Vector2d c = centroid(m, m.cells[0]);
   const double radius = 4e-6 / bench.plan.stages[0].units.length;
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    const double angle = std::atan2(m.y[i] - c.y(), m.x[i] - c.x());
-    m.x[i] = c.x() + radius * (1 + amplitude * std::cos(2 * angle)) * std::cos(angle);
-    m.y[i] = c.y() + radius * (1 + amplitude * std::cos(2 * angle)) * std::sin(angle);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    const double angle = std::atan2(m.position[1][i] - c.y(), m.position[0][i] - c.x());
+    m.position[0][i] = c.x() + radius * (1 + amplitude * std::cos(2 * angle)) * std::cos(angle);
+    m.position[1][i] = c.y() + radius * (1 + amplitude * std::cos(2 * angle)) * std::sin(angle);
   }
   m.cells[0].rest_area = enclosed_area(m, m.cells[0]);  // what the area correction holds on to
   bench.start();

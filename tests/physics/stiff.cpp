@@ -39,7 +39,7 @@ double disturbance(double shear_modulus, double bending_modulus, const std::stri
   Membranes& m = bench.membranes;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1e-3, 1e-3);
-  for (auto* position : {&m.x, &m.y}) {
+  for (auto* position : {&m.position[0], &m.position[1]}) {
     for (double& p : *position) p += uniform(random);
   }
   bench.start();
@@ -124,10 +124,11 @@ TEST_CASE("semi-implicit forces sum to zero in a flow, and nearly so do their to
   const Membranes& m = bench.membranes;
   const Eigen::Vector2d c = centroid(m, m.cells[0]);
   double x = 0, torque = 0, size = 0, lever = 0;
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    const double rx = m.x[i] - c.x(), ry = m.y[i] - c.y(), f = std::hypot(m.force_x[i], m.force_y[i]);
-    x += m.force_x[i];
-    torque += rx * m.force_y[i] - ry * m.force_x[i];
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    const double rx = m.position[0][i] - c.x(), ry = m.position[1][i] - c.y(),
+                 f = std::hypot(m.force[0][i], m.force[1][i]);
+    x += m.force[0][i];
+    torque += rx * m.force[1][i] - ry * m.force[0][i];
     size += f;
     lever += f * std::hypot(rx, ry);
   }

@@ -63,8 +63,8 @@ class PulledCell {
     REQUIRE(largest < 1e-3);  // pN
   }
 
-  [[nodiscard]] double axial() const { return extent(cell_.x); }
-  [[nodiscard]] double transverse() const { return extent(cell_.z); }
+  [[nodiscard]] double axial() const { return extent(cell_.position[0]); }
+  [[nodiscard]] double transverse() const { return extent(cell_.position[2]); }
   [[nodiscard]] int size() const { return cell_.node_count(); }
 
  private:

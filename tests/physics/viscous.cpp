@@ -17,11 +17,13 @@ namespace {
 /// Amplitude of a stretch that goes along the ring like cos 2q, q the even places of the segments' middles.
 double stretch_amplitude(const Membranes& m) {
   double sum = 0;
-  const auto count = static_cast<double>(m.x.size());
+  const auto count = static_cast<double>(m.position[0].size());
   for (int i = 0; i < m.node_count(); ++i) {
     const auto k = static_cast<std::size_t>(i), n = static_cast<std::size_t>(m.cells[0].next(i));
     const double q = 2 * std::numbers::pi * (i + 0.5) / count;
-    sum += std::log(std::hypot(m.x[n] - m.x[k], m.y[n] - m.y[k]) / m.types[0]->rest_length[k]) * std::cos(2 * q);
+    sum += std::log(std::hypot(m.position[0][n] - m.position[0][k], m.position[1][n] - m.position[1][k]) /
+                    m.types[0]->rest_length[k]) *
+           std::cos(2 * q);
   }
   return 2 * sum / count;
 }
@@ -44,11 +46,11 @@ double ring_decay(double membrane_viscosity, double viscosity_ratio, double tau,
   Membranes& m = bench.membranes;
   const LatticeUnits& units = bench.plan.stages[0].units;
   const Eigen::Vector2d c = centroid(m, m.cells[0]);
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    const double q = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(m.x.size());
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    const double q = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(m.position[0].size());
     const double angle = q + 0.002 * std::sin(2 * q);
-    m.x[i] = c.x() + radius / units.length * std::cos(angle);
-    m.y[i] = c.y() + radius / units.length * std::sin(angle);
+    m.position[0][i] = c.x() + radius / units.length * std::cos(angle);
+    m.position[1][i] = c.y() + radius / units.length * std::sin(angle);
   }
   bench.start();
   const double unit = plasma_viscosity * radius / modulus / units.time;  // steps
@@ -94,7 +96,7 @@ TEST_CASE("the viscous membrane of a tumbling cell never gives the flow more tha
     std::vector<double> l;
     for (int i = 0; i < m.node_count(); ++i) {
       const auto k = static_cast<std::size_t>(i), n = static_cast<std::size_t>(m.cells[0].next(i));
-      l.push_back(std::hypot(m.x[n] - m.x[k], m.y[n] - m.y[k]));
+      l.push_back(std::hypot(m.position[0][n] - m.position[0][k], m.position[1][n] - m.position[1][k]));
     }
     return l;
   };

@@ -58,20 +58,21 @@ void minimise(const SolverSetup& setup, Membranes& m, double area) {
   MembraneForces membrane(m, {.laws = {setup.cell_types[0].laws}, .viscosity = setup.viscosity()});
   WallContacts walls(m, setup.wall_interactions, setup.domain);
   const CellRange& cell = m.cells[0];
-  std::vector<double> u(m.x.size(), 0.0), v(m.x.size(), 0.0);
+  std::vector<double> u(m.position[0].size(), 0.0), v(m.position[0].size(), 0.0);
   double step = 0.05, damping = 0.1;
   int downhill = 0;
   for (int iteration = 0; iteration < 400000; ++iteration) {
-    std::fill(m.velocity_x.begin(), m.velocity_x.end(), 0.0), std::fill(m.velocity_y.begin(), m.velocity_y.end(), 0.0);
+    std::fill(m.velocity[0].begin(), m.velocity[0].end(), 0.0),
+        std::fill(m.velocity[1].begin(), m.velocity[1].end(), 0.0);
     membrane.run({}, m);
     walls.run({}, m);
     const double pressure = 2 * (area - enclosed_area(m, cell)) / area;
     double power = 0, speed = 0, force = 0;
-    std::vector<double> fx = m.force_x, fy = m.force_y;
+    std::vector<double> fx = m.force[0], fy = m.force[1];
     for (int i = cell.first; i < cell.end(); ++i) {
       const int after = cell.next(i), before = i == cell.first ? cell.end() - 1 : i - 1;
-      fx[i] += pressure * (m.y[after] - m.y[before]) / 2;  // dA/dX
-      fy[i] -= pressure * (m.x[after] - m.x[before]) / 2;
+      fx[i] += pressure * (m.position[1][after] - m.position[1][before]) / 2;  // dA/dX
+      fy[i] -= pressure * (m.position[0][after] - m.position[0][before]) / 2;
       power += fx[i] * u[i] + fy[i] * v[i];
       speed += u[i] * u[i] + v[i] * v[i];
       force += fx[i] * fx[i] + fy[i] * fy[i];
@@ -89,7 +90,7 @@ void minimise(const SolverSetup& setup, Membranes& m, double area) {
     }
     for (std::size_t i = 0; i < u.size(); ++i) {
       u[i] += step * fx[i], v[i] += step * fy[i];
-      m.x[i] += step * u[i], m.y[i] += step * v[i];
+      m.position[0][i] += step * u[i], m.position[1][i] += step * v[i];
     }
   }
 }

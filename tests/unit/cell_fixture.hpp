@@ -96,13 +96,13 @@ inline void deform(Membranes& membranes, std::mt19937& random, double amplitude,
                    phase = 4 * uniform(random);
       for (int i = cell.first; i < cell.end(); ++i) {
         const double angle = 6.283185307179586 * wave * (i - cell.first) / cell.count + phase;
-        membranes.x[static_cast<std::size_t>(i)] += ax * std::cos(angle);
-        membranes.y[static_cast<std::size_t>(i)] += ay * std::sin(angle);
+        membranes.position[0][static_cast<std::size_t>(i)] += ax * std::cos(angle);
+        membranes.position[1][static_cast<std::size_t>(i)] += ay * std::sin(angle);
       }
     }
     for (int i = cell.first; i < cell.end(); ++i) {
-      membranes.x[static_cast<std::size_t>(i)] += noise * uniform(random);
-      membranes.y[static_cast<std::size_t>(i)] += noise * uniform(random);
+      membranes.position[0][static_cast<std::size_t>(i)] += noise * uniform(random);
+      membranes.position[1][static_cast<std::size_t>(i)] += noise * uniform(random);
     }
   }
 }
@@ -113,12 +113,12 @@ struct ForceSums {
 };
 inline ForceSums force_sums(const Membranes& m) {
   ForceSums sums;
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    sums.x += m.force_x[i];
-    sums.y += m.force_y[i];
-    sums.torque += m.x[i] * m.force_y[i] - m.y[i] * m.force_x[i];
-    sums.size += std::hypot(m.force_x[i], m.force_y[i]);
-    sums.lever += std::hypot(m.x[i], m.y[i]) * std::hypot(m.force_x[i], m.force_y[i]);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    sums.x += m.force[0][i];
+    sums.y += m.force[1][i];
+    sums.torque += m.position[0][i] * m.force[1][i] - m.position[1][i] * m.force[0][i];
+    sums.size += std::hypot(m.force[0][i], m.force[1][i]);
+    sums.lever += std::hypot(m.position[0][i], m.position[1][i]) * std::hypot(m.force[0][i], m.force[1][i]);
   }
   return sums;
 }
@@ -139,9 +139,9 @@ double gradient_error(Membranes& membranes, Energy energy, double step) {
       largest = std::max(largest, std::abs(force[i]));
     }
   };
-  const std::vector<double> force_x = membranes.force_x, force_y = membranes.force_y;
-  compare(membranes.x, force_x);
-  compare(membranes.y, force_y);
+  const std::vector<double> force_x = membranes.force[0], force_y = membranes.force[1];
+  compare(membranes.position[0], force_x);
+  compare(membranes.position[1], force_y);
   return worst / largest;
 }
 

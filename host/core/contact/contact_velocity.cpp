@@ -10,7 +10,7 @@ void ContactVelocities::measure(const ContactList& list, const std::vector<Neigh
   normal.resize(count);
   tangential.resize(count);
   sliding.resize(count);
-  const std::vector<double>&u = membranes.velocity_x, &v = membranes.velocity_y;
+  const std::vector<double>&u = membranes.velocity[0], &v = membranes.velocity[1];
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const CellRange& other = membranes.cells[pairs[p].other];
     for (auto i = static_cast<std::size_t>(list.ranges[p].begin); i < static_cast<std::size_t>(list.ranges[p].end);

@@ -21,7 +21,7 @@ struct Segment {
 void collect(const Membranes& membranes, const CellRange& cell, const Vec<2>& move, const Bounds& box,
              std::vector<Segment>& segments) {
   segments.clear();
-  const auto node = [&](int i) -> Vec<2> { return Vec<2>(membranes.x[i], membranes.y[i]) + move; };
+  const auto node = [&](int i) -> Vec<2> { return Vec<2>(membranes.position[0][i], membranes.position[1][i]) + move; };
   for (int i = cell.first; i < cell.end(); ++i) {
     const int next = cell.next(i);
     const Segment segment{i, next, node(i), node(next)};
@@ -106,7 +106,7 @@ class PairCheck {
 
  private:
   [[nodiscard]] Vec<2> first_node(const CellRange& cell) const {
-    return {membranes_.x[cell.first], membranes_.y[cell.first]};
+    return {membranes_.position[0][cell.first], membranes_.position[1][cell.first]};
   }
   const Membranes& membranes_;
   const Domain<2>& domain_;

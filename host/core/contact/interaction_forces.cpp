@@ -204,7 +204,7 @@ void InteractionForces::act(int cell, Membranes& membranes, const Scratch& scrat
   const CellRange& own = membranes.cells[cell];
   const double* weight = membranes.type_of(own).rest_weight.data();
   const double *force = scratch.force.data(), *along = list.along.data();
-  double *force_x = membranes.force_x.data(), *force_y = membranes.force_y.data();
+  double *force_x = membranes.force[0].data(), *force_y = membranes.force[1].data();
   const int *node = list.node.data(), *segment = list.segment.data();
   across_images_[cell] = 0;
   const double *direction_x = list.direction_x.data(), *direction_y = list.direction_y.data();
@@ -242,7 +242,7 @@ void InteractionForces::take_reactions(int cell, Membranes& membranes) const {
     const int first = opposite.reaction - opposite.touched.begin;
     const double *reaction_x = reactions_[pair.other].x.data() + first,
                  *reaction_y = reactions_[pair.other].y.data() + first;
-    double *force_x = membranes.force_x.data() + own.first, *force_y = membranes.force_y.data() + own.first;
+    double *force_x = membranes.force[0].data() + own.first, *force_y = membranes.force[1].data() + own.first;
     const int last = std::min(opposite.touched.end, own.count);
     for (int k = opposite.touched.begin; k < last; ++k) {
       force_x[k] += reaction_x[k];

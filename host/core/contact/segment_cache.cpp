@@ -50,7 +50,7 @@ struct Update {
 }  // namespace
 
 SegmentTable::SegmentTable(const Membranes& membranes) : bounds(membranes.cells.size(), Bounds{}) {
-  const std::size_t size = membranes.x.size() + margin;
+  const std::size_t size = membranes.position[0].size() + margin;
   for (auto* values : {&x, &y, &along_x, &along_y, &inverse_square}) *values = PagedArray<double>(size);
 }
 
@@ -59,8 +59,16 @@ void SegmentTable::update(Worker worker, const Membranes& membranes) {
   const CellNumbers cells = membranes.known_cells(worker);
   for (const int c : cells) {
     const CellRange& cell = membranes.cells[c];
-    UpdateTask task{membranes.x.data(), membranes.y.data(),    x.data(),   y.data(),   along_x.data(),
-                    along_y.data(),     inverse_square.data(), cell.first, cell.end(), Bounds{}};
+    UpdateTask task{membranes.position[0].data(),
+                    membranes.position[1].data(),
+                    x.data(),
+                    y.data(),
+                    along_x.data(),
+                    along_y.data(),
+                    inverse_square.data(),
+                    cell.first,
+                    cell.end(),
+                    Bounds{}};
     function(&task);
     bounds[c] = task.bounds;
   }

@@ -57,9 +57,9 @@ void SelfContacts::run(Worker worker, Membranes& membranes) {
         const int from = range.first + contacts.closest[own], to = range.next(from);
         const double pull = weight[own] * 0.5 * contacts.law[i] / contacts.distance[i];
         const double x = pull * contacts.toward_x[own], y = pull * contacts.toward_y[own], s = contacts.place[own];
-        membranes.force_x[node] += x, membranes.force_y[node] += y;
-        membranes.force_x[from] -= (1 - s) * x, membranes.force_y[from] -= (1 - s) * y;
-        membranes.force_x[to] -= s * x, membranes.force_y[to] -= s * y;
+        membranes.force[0][node] += x, membranes.force[1][node] += y;
+        membranes.force[0][from] -= (1 - s) * x, membranes.force[1][from] -= (1 - s) * y;
+        membranes.force[0][to] -= s * x, membranes.force[1][to] -= s * y;
       }
     }
   }
@@ -69,7 +69,7 @@ void SelfContacts::find(std::size_t interaction, int cell, const Membranes& memb
   const CellRange& range = membranes.cells[cell];
   const Kind& kind = kinds_[interaction];
   const int count = range.count;
-  const double *x = membranes.x.data() + range.first, *y = membranes.y.data() + range.first;
+  const double *x = membranes.position[0].data() + range.first, *y = membranes.position[1].data() + range.first;
   const auto nodes = static_cast<std::size_t>(count);
   if (contacts.square.size() < nodes) {
     for (auto* values :

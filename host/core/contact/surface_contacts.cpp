@@ -310,7 +310,9 @@ void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const 
   list.groups.clear();
   list.candidates.clear();
   const CellRange& own = surfaces.cells[cell];
-  const auto place_of = [&](int node) { return Vec<3>(surfaces.x[node], surfaces.y[node], surfaces.z[node]); };
+  const auto place_of = [&](int node) {
+    return Vec<3>(surfaces.position[0][node], surfaces.position[1][node], surfaces.position[2][node]);
+  };
   const auto box_of = [&](int first, int end) {
     Eigen::AlignedBox3d box;
     for (int node = first; node < end; ++node)
@@ -398,7 +400,9 @@ void SurfaceContacts::look_at_next(const Surfaces& surfaces, CandidateList& list
     const Group& group = list.groups[search.group];
     const Image& image = list.images[group.image];
     const auto candidates = list.next(search);
-    const Vec<3> place = Vec<3>(surfaces.x[group.node], surfaces.y[group.node], surfaces.z[group.node]) - image.moved;
+    const Vec<3> place =
+        Vec<3>(surfaces.position[0][group.node], surfaces.position[1][group.node], surfaces.position[2][group.node]) -
+        image.moved;
     const int last = static_cast<int>(candidates.size()) - 1;
     for (int k = 0; k < at_once; ++k) {
       const std::array<int, 3>& corners = image.triangles[candidates[std::min(k, last)].triangle];

@@ -41,7 +41,8 @@ std::optional<SurfaceCrossing> find_crossing(const Surfaces& surfaces, const Dom
         if (other == cell && shift == ImageShift{}) return;
         const Eigen::AlignedBox3d box(Vec<3>(boxes[other].least.data()), Vec<3>(boxes[other].most.data()));
         for (int node = surfaces.cells[cell].first; node < surfaces.cells[cell].end(); ++node) {
-          const Vec<3> place = Vec<3>(surfaces.x[node], surfaces.y[node], surfaces.z[node]) - moved;
+          const Vec<3> place =
+              Vec<3>(surfaces.position[0][node], surfaces.position[1][node], surfaces.position[2][node]) - moved;
           if (box.contains(place)) look(cell, node, other, place);
         }
       });

@@ -12,7 +12,7 @@ namespace {
 /// Of a contact's node against the facing point of the other surface, by the nodes' velocities in the last step.
 Vec<3> relative_velocity(const SurfaceContact& contact, const Surfaces& surfaces) {
   const auto of = [&](int node) {
-    return Vec<3>(surfaces.velocity_x[node], surfaces.velocity_y[node], surfaces.velocity_z[node]);
+    return Vec<3>(surfaces.velocity[0][node], surfaces.velocity[1][node], surfaces.velocity[2][node]);
   };
   Vec<3> apart = of(contact.node);
   for (std::size_t k = 0; k < 3; ++k) apart -= contact.weight[k] * of(contact.corner[k]);
@@ -71,9 +71,9 @@ void SurfaceInteractions::run(Worker worker, int phase, Surfaces& surfaces) {
   for (const int cell : surfaces.known_cells()) {
     for (const Reaction& reaction : reactions_[cell]) {
       if (reaction.node < own.begin || reaction.node >= own.end || !surfaces.owns(reaction.cell)) continue;
-      surfaces.force_x[reaction.node] += reaction.force.x();
-      surfaces.force_y[reaction.node] += reaction.force.y();
-      surfaces.force_z[reaction.node] += reaction.force.z();
+      surfaces.force[0][reaction.node] += reaction.force.x();
+      surfaces.force[1][reaction.node] += reaction.force.y();
+      surfaces.force[2][reaction.node] += reaction.force.z();
     }
   }
 }
@@ -127,9 +127,9 @@ void SurfaceInteractions::act(int cell, Surfaces& surfaces, const Scratch& scrat
     if (scratch.result[c] == 0) continue;
     const Vec<3> force = 0.5 * rest.node_area[contact.node - first] * scratch.result[c] * contact.direction;
     across_images_[cell] += contact.shift.y * force.x();
-    surfaces.force_x[contact.node] += force.x();
-    surfaces.force_y[contact.node] += force.y();
-    surfaces.force_z[contact.node] += force.z();
+    surfaces.force[0][contact.node] += force.x();
+    surfaces.force[1][contact.node] += force.y();
+    surfaces.force[2][contact.node] += force.z();
     for (std::size_t k = 0; k < 3; ++k) {
       if (contact.weight[k] != 0)
         reactions_[cell].push_back({contact.other, contact.corner[k], -contact.weight[k] * force});

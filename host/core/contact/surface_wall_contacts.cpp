@@ -41,17 +41,18 @@ void SurfaceWallContacts::measure(const SurfaceLaw& law, int cell, int wall, con
     contacts.inputs.distance.push_back(std::max(distance, ContactList::least_distance));
     if (law.remembers()) contacts.inputs.key.push_back({node - range.first, wall, {}});
     if (law.reads_normal_velocity())  // the wall moves along itself
-      contacts.inputs.normal_velocity.push_back(away_y * surfaces.velocity_y[node] +
-                                                away_z * surfaces.velocity_z[node]);
+      contacts.inputs.normal_velocity.push_back(away_y * surfaces.velocity[1][node] +
+                                                away_z * surfaces.velocity[2][node]);
   };
   const auto& [axis, place, outward] = walls_[wall];
   for (int i = range.first; i < range.end(); ++i) {
     if (axis == 1) {
-      add(i, outward * (surfaces.y[i] - place), outward, 0);
+      add(i, outward * (surfaces.position[1][i] - place), outward, 0);
     } else if (axis == 2) {
-      add(i, outward * (surfaces.z[i] - place), 0, outward);
+      add(i, outward * (surfaces.position[2][i] - place), 0, outward);
     } else {
-      const double y = surfaces.y[i] - middle_[0], z = surfaces.z[i] - middle_[1], radius = std::sqrt(y * y + z * z);
+      const double y = surfaces.position[1][i] - middle_[0], z = surfaces.position[2][i] - middle_[1],
+                   radius = std::sqrt(y * y + z * z);
       if (radius > 0) add(i, place - radius, -y / radius, -z / radius);
     }
   }
@@ -81,8 +82,8 @@ void SurfaceWallContacts::run(Worker worker, Surfaces& surfaces) {
     for_each(cell, surfaces, false, &next, contacts, [&] {
       for (std::size_t i = 0; i < contacts.node.size(); ++i) {
         const int node = contacts.node[i];
-        surfaces.force_y[node] += area[node - first] * contacts.law[i] * contacts.away_y[i];
-        surfaces.force_z[node] += area[node - first] * contacts.law[i] * contacts.away_z[i];
+        surfaces.force[1][node] += area[node - first] * contacts.law[i] * contacts.away_y[i];
+        surfaces.force[2][node] += area[node - first] * contacts.law[i] * contacts.away_z[i];
       }
     });
     if (remembers_) surfaces.wall_contacts.of_cell[cell].swap(next);

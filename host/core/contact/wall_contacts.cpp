@@ -32,7 +32,7 @@ WallContacts::WallContacts(Membranes& membranes, std::vector<WallInteraction> in
 
 void WallContacts::run(Worker worker, Membranes& membranes) {
   const CellNumbers cells = membranes.own_cells(worker);
-  double* force = membranes.force_y.data();
+  double* force = membranes.force[1].data();
   for (const int cell : cells) {
     Contacts& contacts = contacts_.of(cells.first_place());
     const CellRange& range = membranes.cells[cell];
@@ -52,7 +52,7 @@ void WallContacts::run(Worker worker, Membranes& membranes) {
 void WallContacts::find(int cell, double cutoff, const Membranes& membranes, Contacts& contacts) const {
   contacts.count = 0;
   const CellRange& range = membranes.cells[cell];
-  const double* y = membranes.y.data();
+  const double* y = membranes.position[1].data();
   double lowest = y[range.first], highest = lowest;
   for (int i = range.first; i < range.end(); ++i) {
     lowest = y[i] < lowest ? y[i] : lowest;
@@ -72,7 +72,7 @@ void WallContacts::find(int cell, double cutoff, const Membranes& membranes, Con
     contacts.node[at] = node;
     contacts.distance[at] = std::max(distance, ContactList::least_distance);
     contacts.outward[at] = outward;
-    contacts.normal_velocity[at] = outward * membranes.velocity_y[node];  // the wall moves along itself
+    contacts.normal_velocity[at] = outward * membranes.velocity[1][node];  // the wall moves along itself
   };
   for (int i = range.first; i < range.end(); ++i) {
     add(i, y[i] - lower_, 1);

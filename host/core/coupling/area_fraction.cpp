@@ -56,7 +56,7 @@ void cover(const Membranes& membranes, const CellRange& cell, AreaFraction& frac
   fraction.end.assign(static_cast<std::size_t>(height), 0);
 
   const double shift_x = 0.5 - fraction.x0, shift_y = 0.5 - fraction.y0;
-  const double *xs = membranes.x.data(), *ys = membranes.y.data();
+  const double *xs = membranes.position[0].data(), *ys = membranes.position[1].data();
   for (int i = cell.first; i < cell.end(); ++i) {
     const int j = cell.next(i);
     double x0 = xs[i] + shift_x, y0 = ys[i] + shift_y, x1 = xs[j] + shift_x, y1 = ys[j] + shift_y;

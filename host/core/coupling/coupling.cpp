@@ -315,8 +315,8 @@ void Coupling<T>::interpolate(Worker worker, Membranes& membranes, const VectorF
   const std::ptrdiff_t stride = velocity[0].stride(1);
   const std::ptrdiff_t first = domain_.block.begin[1] * stride + domain_.block.begin[0];
   InterpolateTask<T> task{{column_.data(), row_.data(), p_x_.data(), q_x_.data(), p_y_.data(), q_y_.data()},
-                          membranes.velocity_x.data(),
-                          membranes.velocity_y.data(),
+                          membranes.velocity[0].data(),
+                          membranes.velocity[1].data(),
                           nodes.begin,
                           nodes.end,
                           velocity[0].row(0) - first,

@@ -50,7 +50,7 @@ void InteriorField<T>::find_reach(const Surfaces& surfaces, int cell) {
   reach.columns.clear();
   reach.size[0] = reach.size[1] = 0;
   const CellRange& range = surfaces.cells[cell];
-  const double* const along[2] = {surfaces.y.data(), surfaces.z.data()};
+  const double* const along[2] = {surfaces.position[1].data(), surfaces.position[2].data()};
   const VolumeFraction& fraction = fraction_[cell];
   for (int axis = 0; axis < 2; ++axis) {
     const auto [least, most] = std::minmax_element(along[axis] + range.first, along[axis] + range.end());
@@ -64,9 +64,10 @@ void InteriorField<T>::find_reach(const Surfaces& surfaces, int cell) {
     to = {std::min(to.begin, added.begin), std::max(to.end, added.end)};
   };
   for (int i = range.first; i < range.end(); ++i) {
-    if (!(std::abs(surfaces.x[i]) < 1e9)) continue;
-    const int x = floor_int(surfaces.x[i]);
-    include(reach.at(floor_int(surfaces.y[i]) - reach.first[0], floor_int(surfaces.z[i]) - reach.first[1]),
+    if (!(std::abs(surfaces.position[0][i]) < 1e9)) continue;
+    const int x = floor_int(surfaces.position[0][i]);
+    include(reach.at(floor_int(surfaces.position[1][i]) - reach.first[0],
+                     floor_int(surfaces.position[2][i]) - reach.first[1]),
             {x - 2 - margin_, x + 4 + margin_});
   }
   // From the row below a node to the rows that its stencil reaches, along one axis and then the other.

@@ -126,7 +126,7 @@ SlipCorrection::SlipCorrection(const Membranes& membranes, std::vector<Type> typ
   }
   for (auto* values : {&tangent_x_, &tangent_y_, &inverse_chord_, &touch_x_, &touch_y_, &force_x_, &force_y_, &slip_,
                        &scratch_x_, &scratch_y_}) {
-    *values = PagedArray<double>(membranes.x.size());
+    *values = PagedArray<double>(membranes.position[0].size());
   }
 }
 
@@ -151,10 +151,10 @@ void SlipCorrection::run(Worker worker, const Membranes& membranes, double* velo
                         constants.shift,
                         constants.slip / viscosity_,
                         smoothings_[cell.type],
-                        membranes.x.data(),
-                        membranes.y.data(),
-                        membranes.force_x.data(),
-                        membranes.force_y.data(),
+                        membranes.position[0].data(),
+                        membranes.position[1].data(),
+                        membranes.force[0].data(),
+                        membranes.force[1].data(),
                         tangent_x_.data(),
                         tangent_y_.data(),
                         inverse_chord_.data(),
@@ -187,14 +187,14 @@ void SlipCorrection::complete(Worker worker, const Membranes& membranes) {
   for (const int c : membranes.own_cells(worker)) {
     const CellRange& cell = membranes.cells[c];
     for (auto i = static_cast<std::size_t>(cell.first); i < static_cast<std::size_t>(cell.end()); ++i) {
-      force_x_[i] = membranes.force_x[i] + force_x_[i];
-      force_y_[i] = membranes.force_y[i] + force_y_[i];
+      force_x_[i] = membranes.force[0][i] + force_x_[i];
+      force_y_[i] = membranes.force[1][i] + force_y_[i];
     }
   }
 }
 
 void SlipCorrection::correct(Worker worker, Membranes& membranes) {
-  run<Correct>(worker, membranes, membranes.velocity_x.data(), membranes.velocity_y.data(), Whose::own);
+  run<Correct>(worker, membranes, membranes.velocity[0].data(), membranes.velocity[1].data(), Whose::own);
 }
 
 }  // namespace rouleau::core

@@ -320,8 +320,8 @@ SurfaceCoupling<T>::SurfaceCoupling(KernelKind kernel, const Domain<3>& domain)
 template <class T>
 void SurfaceCoupling<T>::reserve(const Surfaces& surfaces) {
   for (int k = 0; k < 3; ++k) {
-    base_[k] = PagedArray<int>(surfaces.x.size());
-    for (auto* values : {&p_[k], &q_[k]}) *values = PagedArray<T>(surfaces.x.size());
+    base_[k] = PagedArray<int>(surfaces.position[0].size());
+    for (auto* values : {&p_[k], &q_[k]}) *values = PagedArray<T>(surfaces.position[0].size());
   }
   planes_.assign(surfaces.cells.size(), {0, 0});
 }
@@ -382,8 +382,8 @@ void SurfaceCoupling<T>::interpolate(Worker worker, Surfaces& surfaces, const Ve
     task.at.base[k] = base_[k].data(), task.at.p[k] = p_[k].data(), task.at.q[k] = q_[k].data();
     task.origin[k] = velocity[k].row(0, 0) - first;
   }
-  task.velocity[0] = surfaces.velocity_x.data(), task.velocity[1] = surfaces.velocity_y.data();
-  task.velocity[2] = surfaces.velocity_z.data();
+  task.velocity[0] = surfaces.velocity[0].data(), task.velocity[1] = surfaces.velocity[1].data();
+  task.velocity[2] = surfaces.velocity[2].data();
   task.block = domain_.whole() ? nullptr : &domain_.block;
   const CellNumbers cells = surfaces.known_cells(worker);
   for (const int c : cells) {

@@ -41,7 +41,7 @@ SurfaceSlip::SurfaceSlip(const Surfaces& surfaces, std::vector<Type> types, doub
                                                            types_[t].stretching_stiffness));
   }
   const auto make = [&](auto& arrays) {
-    for (auto& values : arrays) values = PagedArray<double>(surfaces.x.size());
+    for (auto& values : arrays) values = PagedArray<double>(surfaces.position[0].size());
   };
   make(normal_), make(touch_), make(force_), make(slip_), make(turn_);
 }
@@ -86,9 +86,10 @@ SlipArrays SurfaceSlip::arrays_of(const Surfaces& surfaces, int cell, const Surf
       point_into(arrays.turn, turn_, first);
   for (std::size_t k = 0; k < 3; ++k) arrays.normal_sum[k] = normals.sums()[k] + first;
   arrays.area = normals.node_areas() + first;
-  arrays.place[0] = &surfaces.x[first], arrays.place[1] = &surfaces.y[first], arrays.place[2] = &surfaces.z[first];
-  arrays.force[0] = &surfaces.force_x[first], arrays.force[1] = &surfaces.force_y[first];
-  arrays.force[2] = &surfaces.force_z[first];
+  arrays.place[0] = &surfaces.position[0][first], arrays.place[1] = &surfaces.position[1][first],
+  arrays.place[2] = &surfaces.position[2][first];
+  arrays.force[0] = &surfaces.force[0][first], arrays.force[1] = &surfaces.force[1][first];
+  arrays.force[2] = &surfaces.force[2][first];
   point_into(arrays.covered, scratch.covered), point_into(arrays.along, scratch.along);
   point_into(arrays.turned, scratch.turned);
   arrays.pressure = scratch.pressure.data();
@@ -174,8 +175,8 @@ void SurfaceSlip::correct(Worker worker, Surfaces& surfaces, const SurfaceNormal
   for (const int cell : cells) {
     const CellRange& range = surfaces.cells[cell];
     if (SlipArrays arrays = arrays_of(surfaces, cell, normals, scratch); arrays.shift != 0) {
-      arrays.velocity[0] = &surfaces.velocity_x[range.first], arrays.velocity[1] = &surfaces.velocity_y[range.first];
-      arrays.velocity[2] = &surfaces.velocity_z[range.first];
+      arrays.velocity[0] = &surfaces.velocity[0][range.first], arrays.velocity[1] = &surfaces.velocity[1][range.first];
+      arrays.velocity[2] = &surfaces.velocity[2][range.first];
       run_loop<MakeTurns>(arrays);
       const auto turns = to_read(arrays.result[0]);
       const PaddedTriangles& mesh = shared_[range.type].mesh;
@@ -186,9 +187,9 @@ void SurfaceSlip::correct(Worker worker, Surfaces& surfaces, const SurfaceNormal
       run_loop<TurnVelocities>(arrays);
     }
     for (int i = range.first; i < range.end(); ++i) {
-      surfaces.velocity_x[i] += slip_[0][i];
-      surfaces.velocity_y[i] += slip_[1][i];
-      surfaces.velocity_z[i] += slip_[2][i];
+      surfaces.velocity[0][i] += slip_[0][i];
+      surfaces.velocity[1][i] += slip_[1][i];
+      surfaces.velocity[2][i] += slip_[2][i];
     }
   }
 }

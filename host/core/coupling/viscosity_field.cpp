@@ -101,8 +101,8 @@ void ViscosityField<T>::find_reach(const Membranes& membranes, const CellRange& 
   };
   std::vector<Interval> columns(rows, none);  // of the nodes between this row and the next
   for (int i = cell.first; i < cell.end(); ++i) {
-    const int x = core::floor_int(membranes.x[i]);
-    const int y = core::floor_int(membranes.y[i]);
+    const int x = core::floor_int(membranes.position[0][i]);
+    const int y = core::floor_int(membranes.position[1][i]);
     include(columns[y - first], x - 2 - margin_, x + 4 + margin_);
   }
   reached.first = first;

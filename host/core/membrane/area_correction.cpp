@@ -85,10 +85,10 @@ void take_out_pressures(Worker worker, Membranes& membranes) {
     const CellRange& cell = membranes.cells[c];
     const PressureTask task{cell.first,
                             cell.end(),
-                            membranes.x.data(),
-                            membranes.y.data(),
-                            membranes.force_x.data(),
-                            membranes.force_y.data()};
+                            membranes.position[0].data(),
+                            membranes.position[1].data(),
+                            membranes.force[0].data(),
+                            membranes.force[1].data()};
     function(&task);
   }
 }
@@ -100,10 +100,10 @@ void keep_areas(Worker worker, Membranes& membranes, double strain) {
     const CellRange& cell = membranes.cells[c];
     AreaTask task{cell.first,
                   cell.end(),
-                  membranes.x.data(),
-                  membranes.y.data(),
-                  membranes.velocity_x.data(),
-                  membranes.velocity_y.data(),
+                  membranes.position[0].data(),
+                  membranes.position[1].data(),
+                  membranes.velocity[0].data(),
+                  membranes.velocity[1].data(),
                   cell.rest_area,
                   0};
     function(&task);

@@ -4,16 +4,22 @@ namespace rouleau::core {
 
 void CellNodes::reserve(std::size_t cell_count, std::size_t nodes, int dimension) {
   cells.reserve(cell_count);
-  for (auto* values : {&x, &y, &force_x, &force_y, &velocity_x, &velocity_y}) values->reserve(nodes);
-  for (auto* values : {&z, &force_z, &velocity_z}) {
-    if (dimension == 3) values->reserve(nodes);
+  for (NodeArrays* arrays : {&position, &force, &velocity}) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(dimension); ++k) (*arrays)[k].reserve(nodes);
+  }
+}
+
+void CellNodes::resize_to_positions() {
+  for (std::size_t k = 0; k < position.size(); ++k) {
+    for (NodeArrays* arrays : {&force, &velocity}) (*arrays)[k].resize(position[k].size(), 0.0);
   }
 }
 
 void CellNodes::remove_cells() {
   cells.clear();
-  for (auto* values : {&x, &y, &z, &force_x, &force_y, &force_z, &velocity_x, &velocity_y, &velocity_z})
-    values->clear();
+  for (NodeArrays* arrays : {&position, &force, &velocity}) {
+    for (std::vector<double>& values : *arrays) values.clear();
+  }
 }
 
 std::vector<Range> CellNodes::nodes_in_runs(bool of_known) const {
@@ -28,12 +34,14 @@ std::vector<Range> CellNodes::nodes_in_runs(bool of_known) const {
 }
 
 void CellNodes::forget_places(std::span<const Range> nodes) {
-  for (auto* values : {&x, &y, &z}) release(*values, nodes);
+  for (std::vector<double>& values : position) release(values, nodes);
 }
 
 void CellNodes::forget(std::span<const Range> nodes) {
   forget_places(nodes);
-  for (auto* values : {&force_x, &force_y, &force_z, &velocity_x, &velocity_y, &velocity_z}) release(*values, nodes);
+  for (NodeArrays* arrays : {&force, &velocity}) {
+    for (std::vector<double>& values : *arrays) release(values, nodes);
+  }
   for (ElementState& of_all : state) release(of_all.value, nodes);
   for (ContactMemory* memory : {&contacts, &wall_contacts}) forget_unknown_of(memory->of_cell);
 }

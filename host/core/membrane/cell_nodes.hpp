@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "base/worker.hpp"
@@ -68,26 +70,43 @@ class CellNumbers {
   const CellPart* parts_;
 };
 
+/// A number for each node along x, y and z; that along z is empty in two dimensions.
+using NodeArrays = std::array<std::vector<double>, 3>;
+
+/// Those along the axes of D dimensions.
+template <int D, class Arrays>
+auto along_axes(Arrays& arrays) {
+  return std::span(arrays).template first<D>();
+}
+
+/// Where they begin for the nodes from `first` on.
+template <int D, class Arrays>
+auto pointers(Arrays& arrays, int first = 0) {
+  std::array<decltype(arrays[0].data()), D> begin;
+  for (std::size_t k = 0; k < D; ++k) begin[k] = arrays[k].data() + first;
+  return begin;
+}
+
 /// Positions are not wrapped into the periodic box, so that cells stay whole. The first node of the lattice lies at the
-/// origin, walls half a spacing outside the first and the last one. What is along z is empty in two dimensions.
+/// origin, walls half a spacing outside the first and the last one.
 struct CellNodes {
   std::vector<CellRange> cells;
-  std::vector<double> x, y, z;                             ///< positions
-  std::vector<double> force_x, force_y, force_z;           ///< on the nodes, set anew each step
-  std::vector<double> velocity_x, velocity_y, velocity_z;  ///< displacement of the last step
-  std::vector<double> largest_step;                        ///< of each known cell: no node moved further in the last
-                                                           ///< step; empty: unknown
-  double largest_step_of_others = 0;                       ///< the same for all cells that are not known
-  std::vector<double> area_leakage;                        ///< of each cell, over its rest area: area that the area
-                                                           ///< correction kept from leaving it within a strain of about
-                                                           ///< one, in three dimensions volume; empty: none
-  std::vector<ElementState> state;                         ///< what laws and the method remember; empty where none does
-  ContactMemory contacts;                                  ///< what interactions between cells remember
-  ContactMemory wall_contacts;                             ///< what interactions with walls remember
-  std::vector<CellPart> part;                              ///< of this rank in each cell; empty: all of every cell
-  std::vector<int> known;                                  ///< the cells that it knows, if it has parts
+  NodeArrays position;
+  NodeArrays force;                   ///< on the nodes, set anew each step
+  NodeArrays velocity;                ///< displacement of the last step
+  std::vector<double> largest_step;   ///< of each known cell: no node moved further in the last
+                                      ///< step; empty: unknown
+  double largest_step_of_others = 0;  ///< the same for all cells that are not known
+  std::vector<double> area_leakage;   ///< of each cell, over its rest area: area that the area
+                                      ///< correction kept from leaving it within a strain of about
+                                      ///< one, in three dimensions volume; empty: none
+  std::vector<ElementState> state;    ///< what laws and the method remember; empty where none does
+  ContactMemory contacts;             ///< what interactions between cells remember
+  ContactMemory wall_contacts;        ///< what interactions with walls remember
+  std::vector<CellPart> part;         ///< of this rank in each cell; empty: all of every cell
+  std::vector<int> known;             ///< the cells that it knows, if it has parts
 
-  [[nodiscard]] int node_count() const { return static_cast<int>(x.size()); }
+  [[nodiscard]] int node_count() const { return static_cast<int>(position[0].size()); }
   [[nodiscard]] bool owns(int cell) const { return part.empty() || part[cell].owned; }
   [[nodiscard]] bool knows(int cell) const { return part.empty() || part[cell].known; }
   [[nodiscard]] bool reaches(int cell) const { return part.empty() || part[cell].reaching; }
@@ -121,6 +140,8 @@ struct CellNodes {
 
   /// Makes room for so many, without taking memory for it before they are there.
   void reserve(std::size_t cell_count, std::size_t nodes, int dimension);
+  /// Nodes that positions have been added of exert no force and have not moved.
+  void resize_to_positions();
   /// Takes all cells away, as they were added; the room for them stays.
   void remove_cells();
   /// Nodes of the cells that this rank knows or does not know, in runs.
@@ -145,13 +166,12 @@ struct CellNodes {
 /// The box around a cell's nodes; its numbers are none where one of theirs is.
 template <int D>
 BoundingBox<D> box_of(const CellNodes& nodes, int cell) {
-  const std::vector<double>* const places[] = {&nodes.x, &nodes.y, &nodes.z};
   const CellRange& range = nodes.cells[cell];
   BoundingBox<D> box;
   for (int k = 0; k < D; ++k) {
     double least = INFINITY, most = -INFINITY, zero = 0;  // zero becomes NaN with the first place that is not finite
     for (int i = range.first; i < range.end(); ++i) {
-      const double place = (*places[k])[i];
+      const double place = nodes.position[k][i];
       least = std::min(least, place), most = std::max(most, place);
       zero += place - place;
     }

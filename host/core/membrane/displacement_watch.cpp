@@ -4,56 +4,52 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace rouleau::core {
 
-double largest_displacement(const CellNodes& cells, std::array<const double*, 3> old, Range nodes) {
-  const auto [old_x, old_y, old_z] = old;
+namespace {
+
+template <int D>
+double farthest(const std::array<const double*, D>& now, const std::array<const double*, 3>& old, Range nodes) {
   double square = 0, zero = 0;  // zero becomes NaN with the first position that is not finite
-  const auto compare = [&](double s) {
+  for (int i = nodes.begin; i < nodes.end; ++i) {
+    double s = 0;
+    for (int k = 0; k < D; ++k) s += (now[k][i] - old[k][i]) * (now[k][i] - old[k][i]);
     square = s > square ? s : square;
     zero += s - s;
-  };
-  const auto begin = static_cast<std::size_t>(nodes.begin), end = static_cast<std::size_t>(nodes.end);
-  if (cells.z.empty()) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const double dx = cells.x[i] - old_x[i], dy = cells.y[i] - old_y[i];
-      compare(dx * dx + dy * dy);
-    }
-  } else {
-    for (std::size_t i = begin; i < end; ++i) {
-      const double dx = cells.x[i] - old_x[i], dy = cells.y[i] - old_y[i], dz = cells.z[i] - old_z[i];
-      compare(dx * dx + dy * dy + dz * dz);
-    }
   }
   return std::sqrt(square) + zero;
 }
 
+}  // namespace
+
+double largest_displacement(const CellNodes& cells, std::array<const double*, 3> old, Range nodes) {
+  if (cells.position[2].empty()) return farthest<2>(pointers<2>(cells.position), old, nodes);
+  return farthest<3>(pointers<3>(cells.position), old, nodes);
+}
+
 DisplacementWatch::Memory::Memory(const CellNodes& cells)
-    : x(cells.x.size()),
-      y(cells.y.size()),
-      z(cells.z.size()),
-      limit(cells.cells.size(), 0.0),
-      bound(cells.cells.size(), std::numeric_limits<double>::infinity()) {
-  for (const int c : cells.known_cells()) {
-    for (auto* along : {&x, &y, &z}) {
-      if (along->size() > 0) std::fill_n(along->data() + cells.cells[c].first, cells.cells[c].count, std::nan(""));
-    }
+    : limit(cells.cells.size(), 0.0), bound(cells.cells.size(), std::numeric_limits<double>::infinity()) {
+  for (std::size_t k = 0; k < position.size() && !cells.position[k].empty(); ++k) {
+    position[k] = PagedArray<double>(cells.position[k].size());
+    for (const int c : cells.known_cells())
+      std::fill_n(position[k].data() + cells.cells[c].first, cells.cells[c].count, std::nan(""));
   }
 }
 
 bool DisplacementWatch::Memory::any(const CellNodes& cells) const {
   const CellNumbers known = cells.known_cells();
-  return !known.empty() && !std::isnan(x[static_cast<std::size_t>(cells.cells[*known.begin()].first)]);
+  return !known.empty() && !std::isnan(position[0][static_cast<std::size_t>(cells.cells[*known.begin()].first)]);
 }
 
 void DisplacementWatch::Memory::exchange_places(CellNodes& cells) {
   for (const int c : cells.known_cells()) {
     const CellRange& cell = cells.cells[c];
-    const auto exchange = [&cell](std::vector<double>& now, PagedArray<double>& then) {
-      if (!now.empty()) std::swap_ranges(now.begin() + cell.first, now.begin() + cell.end(), then.data() + cell.first);
-    };
-    exchange(cells.x, x), exchange(cells.y, y), exchange(cells.z, z);
+    for (std::size_t k = 0; k < position.size() && !cells.position[k].empty(); ++k) {
+      const auto now = cells.position[k].begin();
+      std::swap_ranges(now + cell.first, now + cell.end(), position[k].data() + cell.first);
+    }
   }
 }
 
@@ -62,7 +58,7 @@ DisplacementWatch::DisplacementWatch(const CellNodes& cells) : memory_(cells), m
 }
 
 void DisplacementWatch::forget(const CellNodes& cells, std::span<const Range> nodes) {
-  for (auto* places : {&memory_.x, &memory_.y, &memory_.z}) release(*places, nodes);
+  for (PagedArray<double>& along : memory_.position) release(along, nodes);
   cells.forget_unknown_of(moved_);
 }
 
@@ -88,8 +84,7 @@ void DisplacementWatch::measure_cell(int cell, const CellNodes& nodes) {
   bound = nodes.largest_step.empty() ? std::numeric_limits<double>::infinity() : bound + nodes.largest_step[cell];
   if (!(bound <= memory_.limit[cell])) {
     const CellRange& range = nodes.cells[cell];
-    bound =
-        largest_displacement(nodes, {memory_.x.data(), memory_.y.data(), memory_.z.data()}, {range.first, range.end()});
+    bound = largest_displacement(nodes, pointers<3>(std::as_const(memory_.position)), {range.first, range.end()});
   }
   moved_[cell] = !(bound <= memory_.limit[cell]);
 }
@@ -101,12 +96,10 @@ bool DisplacementWatch::exceeded() const {
 
 void DisplacementWatch::remember(int cell, const CellNodes& nodes, double limit) {
   const CellRange& range = nodes.cells[cell];
-  const auto copy = [&range](const std::vector<double>& from, PagedArray<double>& to) {
-    std::copy(from.begin() + range.first, from.begin() + range.end(), to.data() + range.first);
-  };
-  copy(nodes.x, memory_.x);
-  copy(nodes.y, memory_.y);
-  if (!nodes.z.empty()) copy(nodes.z, memory_.z);
+  for (std::size_t k = 0; k < nodes.position.size() && !nodes.position[k].empty(); ++k) {
+    const auto now = nodes.position[k].begin();
+    std::copy(now + range.first, now + range.end(), memory_.position[k].data() + range.first);
+  }
   memory_.limit[cell] = limit;
   memory_.bound[cell] = 0;
 }

@@ -48,9 +48,9 @@ class DisplacementWatch {
     /// The known cells are where they were, and it remembers where they are now.
     void exchange_places(CellNodes& cells);
 
-    PagedArray<double> x, y, z;  ///< of all nodes; the last is empty in two dimensions. NaN: nothing remembered
-    std::vector<double> limit;   ///< of each cell
-    std::vector<double> bound;   ///< of each cell: upper bound of its nodes' displacements
+    std::array<PagedArray<double>, 3> position;  ///< of all nodes, as in CellNodes. NaN: nothing remembered
+    std::vector<double> limit;                   ///< of each cell
+    std::vector<double> bound;                   ///< of each cell: upper bound of its nodes' displacements
   };
   [[nodiscard]] const Memory& memory() const { return memory_; }
   [[nodiscard]] Memory& memory() { return memory_; }

@@ -8,7 +8,7 @@ namespace rouleau::core {
 
 namespace {
 
-Vec<2> node(const Membranes& membranes, int i) { return {membranes.x[i], membranes.y[i]}; }
+Vec<2> node(const Membranes& membranes, int i) { return {membranes.position[0][i], membranes.position[1][i]}; }
 
 /// Square of the distance from a point to the segment p ... q.
 double square_distance(const Vec<2>& point, const Vec<2>& p, const Vec<2>& q) {
@@ -76,10 +76,11 @@ Vec<2> centroid(const Membranes& membranes, const CellRange& cell) {
 
 Bounds bounds(const Membranes& membranes, const CellRange& cell) {
   const auto first = static_cast<std::size_t>(cell.first);
-  Bounds b{membranes.x[first], membranes.x[first], membranes.y[first], membranes.y[first]};
+  Bounds b{membranes.position[0][first], membranes.position[0][first], membranes.position[1][first],
+           membranes.position[1][first]};
   double zero = 0;  // becomes NaN with the first position that is not finite
   for (std::size_t i = first; i < static_cast<std::size_t>(cell.end()); ++i) {
-    const double x = membranes.x[i], y = membranes.y[i];
+    const double x = membranes.position[0][i], y = membranes.position[1][i];
     b = {std::min(b.x_min, x), std::max(b.x_max, x), std::min(b.y_min, y), std::max(b.y_max, y)};
     zero += 0 * x + 0 * y;
   }

@@ -71,18 +71,18 @@ void MembraneForces::measure(const Membranes& membranes, int cell, Scratch& s, b
     std::copy_n(from.data() + range.first, range.count, to.data());
     close(to.data(), range.count);
   };
-  copy_closed(membranes.x, s.x);
-  copy_closed(membranes.y, s.y);
+  copy_closed(membranes.position[0], s.x);
+  copy_closed(membranes.position[1], s.y);
   if (ahead) {
     for (int k = -1; k <= range.count; ++k) {
       const int node = range.first + (k < 0 ? range.count - 1 : k % range.count);
-      s.x[k] += membranes.velocity_x[node];
-      s.y[k] += membranes.velocity_y[node];
+      s.x[k] += membranes.velocity[0][node];
+      s.y[k] += membranes.velocity[1][node];
     }
   }
   if (type.rate) {
-    copy_closed(membranes.velocity_x, s.u);
-    copy_closed(membranes.velocity_y, s.v);
+    copy_closed(membranes.velocity[0], s.u);
+    copy_closed(membranes.velocity[1], s.v);
   }
   CellArrays arrays{};
   arrays.count = range.count;
@@ -268,8 +268,8 @@ void MembraneForces::act(Membranes& membranes, int cell, Scratch& s, const CellS
   arrays.inverse_length = s.inverse_length.data();
   arrays.tension = s.tension.data(), arrays.moment = s.moment.data();
   arrays.segment_force_x = s.segment_force_x.data(), arrays.segment_force_y = s.segment_force_y.data();
-  arrays.force_x = &membranes.force_x[range.first];
-  arrays.force_y = &membranes.force_y[range.first];
+  arrays.force_x = &membranes.force[0][range.first];
+  arrays.force_y = &membranes.force[1][range.first];
   arrays.with_moment = type.moment, arrays.with_pressure = type.cell;
   arrays.pressure = state.pressure, arrays.perimeter_tension = state.perimeter_tension;
   run_loop<ActOnCell>(arrays);
@@ -281,7 +281,7 @@ void MembraneForces::soften(Membranes& membranes, int cell) const {
   const Type& type = types_[range.type];
   const auto first = static_cast<std::size_t>(range.first);
   const auto held = [&](int component) { return &membranes.state[type.held_force[component]].value[first]; };
-  type.filter->apply(&membranes.force_x[first], &membranes.force_y[first], held(0), held(1));
+  type.filter->apply(&membranes.force[0][first], &membranes.force[1][first], held(0), held(1));
 }
 
 }  // namespace rouleau::core

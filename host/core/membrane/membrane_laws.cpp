@@ -81,7 +81,7 @@ void MembraneForces::keep_state(Membranes& membranes, double tension_unit) {
     Type& type = types_[t];
     const auto keep = [&](int law, const std::string& id, const StateVariable& variable) {
       return core::keep_state(membranes.state, {static_cast<int>(t), law, id, variable.name, variable.unit, {}},
-                              variable.initial, membranes.x.size());
+                              variable.initial, membranes.position[0].size());
     };
     for (std::size_t l = 0; l < type.laws.size(); ++l) {
       Law& law = type.laws[l];

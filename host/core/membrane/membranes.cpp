@@ -34,12 +34,10 @@ void add_cell(Membranes& membranes, int type, double x, double y, double angle) 
                              shape.rest_perimeter});
   const double c = std::cos(angle), s = std::sin(angle);
   for (std::size_t i = 0; i < shape.x.size(); ++i) {
-    membranes.x.push_back(x + c * shape.x[i] - s * shape.y[i]);
-    membranes.y.push_back(y + s * shape.x[i] + c * shape.y[i]);
+    membranes.position[0].push_back(x + c * shape.x[i] - s * shape.y[i]);
+    membranes.position[1].push_back(y + s * shape.x[i] + c * shape.y[i]);
   }
-  for (auto* values : {&membranes.force_x, &membranes.force_y, &membranes.velocity_x, &membranes.velocity_y}) {
-    values->resize(membranes.x.size(), 0.0);
-  }
+  membranes.resize_to_positions();
 }
 
 }  // namespace rouleau::core

@@ -32,8 +32,8 @@ struct Membranes : CellNodes {
   std::vector<std::shared_ptr<const RestShape>> types;
 
   [[nodiscard]] const RestShape& type_of(const CellRange& cell) const { return *types[cell.type]; }
-  [[nodiscard]] NodeVectors positions() const { return {x.data(), y.data()}; }
-  [[nodiscard]] NodeVectors forces() const { return {force_x.data(), force_y.data()}; }
+  [[nodiscard]] NodeVectors positions() const { return {position[0].data(), position[1].data()}; }
+  [[nodiscard]] NodeVectors forces() const { return {force[0].data(), force[1].data()}; }
 };
 
 /// Adds a cell that rests, its shape's origin at (x, y), turned counter-clockwise by `angle`.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <rouleau/dispatch.hpp>
+#include <utility>
 
 namespace rouleau::core {
 
@@ -10,8 +11,8 @@ namespace {
 
 template <int D>
 struct MoveTask {
-  double* place[D];
-  const double* velocity[D];
+  std::array<double*, D> place;
+  std::array<const double*, D> velocity;
   int begin, end;
   double largest_square;
 };
@@ -46,12 +47,13 @@ struct Move {
 template <int D>
 void move(Worker worker, CellNodes& nodes) {
   static const auto function = Dispatch<Move<D>, MoveTask<D>*>::pick();
-  std::vector<double>* const places[] = {&nodes.x, &nodes.y, &nodes.z};
-  const std::vector<double>* const velocities[] = {&nodes.velocity_x, &nodes.velocity_y, &nodes.velocity_z};
   for (const int c : nodes.own_cells(worker)) {
     const CellRange& cell = nodes.cells[c];
-    MoveTask<D> task{.place = {}, .velocity = {}, .begin = cell.first, .end = cell.end(), .largest_square = 0};
-    for (int k = 0; k < D; ++k) task.place[k] = places[k]->data(), task.velocity[k] = velocities[k]->data();
+    MoveTask<D> task{.place = pointers<D>(nodes.position),
+                     .velocity = pointers<D>(std::as_const(nodes.velocity)),
+                     .begin = cell.first,
+                     .end = cell.end(),
+                     .largest_square = 0};
     function(&task);
     nodes.largest_step[c] = std::sqrt(task.largest_square);
   }
@@ -60,7 +62,7 @@ void move(Worker worker, CellNodes& nodes) {
 }  // namespace
 
 void move_nodes(Worker worker, CellNodes& cells) {
-  if (cells.z.empty()) {
+  if (cells.position[2].empty()) {
     move<2>(worker, cells);
   } else {
     move<3>(worker, cells);
@@ -69,12 +71,11 @@ void move_nodes(Worker worker, CellNodes& cells) {
 
 template <int D>
 std::array<double, 3> mean_velocity(const CellNodes& cells, const Ranks<D>& ranks) {
-  const std::vector<double>* const velocities[] = {&cells.velocity_x, &cells.velocity_y, &cells.velocity_z};
   std::vector<ExactSum> sums(D);
   for (const int c : cells.own_cells()) {
     const CellRange& cell = cells.cells[c];
     for (std::size_t k = 0; k < D; ++k)
-      sums[k].add(velocities[k]->data() + cell.first, static_cast<std::size_t>(cell.count));
+      sums[k].add(cells.velocity[k].data() + cell.first, static_cast<std::size_t>(cell.count));
   }
   add_up(ranks, sums);
   std::array<double, 3> mean{};
@@ -90,8 +91,8 @@ FarthestNode farthest_node(const CellNodes& cells) {
   for (const int c : cells.own_cells()) {
     for (int i = cells.cells[c].first; i < cells.cells[c].end(); ++i) {
       const auto k = static_cast<std::size_t>(i);
-      const double along_z = cells.z.empty() ? 0 : cells.velocity_z[k];
-      const double step = std::hypot(std::hypot(cells.velocity_x[k], cells.velocity_y[k]), along_z);
+      const double along_z = cells.position[2].empty() ? 0 : cells.velocity[2][k];
+      const double step = std::hypot(std::hypot(cells.velocity[0][k], cells.velocity[1][k]), along_z);
       if (std::isnan(step)) return {step, i};
       if (farthest.node < 0 || step > farthest.step) farthest = {step, i};
     }

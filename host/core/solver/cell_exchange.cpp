@@ -81,22 +81,6 @@ CellExchange<D>::CellExchange(GhostCells<D> ghosts, bool velocities)
       path_(static_cast<std::size_t>(ghosts_.cell_count()), 0.0) {}
 
 template <int D>
-auto CellExchange<D>::places(Cells& cells) -> Vectors {
-  if constexpr (D == 2) return {&cells.x, &cells.y};
-  if constexpr (D == 3) return {&cells.x, &cells.y, &cells.z};
-}
-template <int D>
-auto CellExchange<D>::velocities(Cells& cells) -> Vectors {
-  if constexpr (D == 2) return {&cells.velocity_x, &cells.velocity_y};
-  if constexpr (D == 3) return {&cells.velocity_x, &cells.velocity_y, &cells.velocity_z};
-}
-template <int D>
-auto CellExchange<D>::forces(Cells& cells) -> Vectors {
-  if constexpr (D == 2) return {&cells.force_x, &cells.force_y};
-  if constexpr (D == 3) return {&cells.force_x, &cells.force_y, &cells.force_z};
-}
-
-template <int D>
 std::vector<BoundingBox<D>> CellExchange<D>::boxes_of_all(const Cells& cells) const {
   std::vector<BoundingBox<D>> mine, all(cells.cells.size());
   for (int c = 0; c < cells.cell_count(); ++c) {
@@ -115,9 +99,7 @@ template <int D>
 template <class Transfer>
 void CellExchange<D>::transfer_memory(Cells& cells, DisplacementWatch& watch, int cell, Transfer transfer) {
   DisplacementWatch::Memory& memory = watch.memory();
-  transfer_nodes(memory.x, cells.cells[cell], transfer);
-  transfer_nodes(memory.y, cells.cells[cell], transfer);
-  if (D == 3) transfer_nodes(memory.z, cells.cells[cell], transfer);
+  for (auto& along : along_axes<D>(memory.position)) transfer_nodes(along, cells.cells[cell], transfer);
   transfer(&memory.limit[cell], 1);
   transfer(&memory.bound[cell], 1);
 }
@@ -152,9 +134,9 @@ template <class Message>
 void CellExchange<D>::transfer_positions(Cells& cells, DisplacementWatch& viscosity, const std::vector<int>& of_peer,
                                          Shown shown, Message& message) {
   for (const int c : of_peer) {
-    for (auto* along : places(cells)) transfer_nodes(*along, cells.cells[c], std::ref(message));
-    for (auto* along : velocities(cells)) {
-      if (shown.velocities) transfer_nodes(*along, cells.cells[c], std::ref(message));
+    for (auto& along : along_axes<D>(cells.position)) transfer_nodes(along, cells.cells[c], std::ref(message));
+    for (auto& along : along_axes<D>(cells.velocity)) {
+      if (shown.velocities) transfer_nodes(along, cells.cells[c], std::ref(message));
     }
     message(&cells.largest_step[c], 1);
     if (shown.memory) transfer_memory(cells, viscosity, c, std::ref(message));
@@ -311,7 +293,7 @@ void CellExchange<D>::transfer_velocities(Cells& cells, const Base& base, int re
   for (const int c : of_peer) {
     for (int i = cells.cells[c].first; i < cells.cells[c].end(); ++i) {
       if (!block.contains(base(i))) continue;
-      for (auto* along : velocities(cells)) message(along->data() + i, 1);
+      for (auto& along : along_axes<D>(cells.velocity)) message(along.data() + i, 1);
     }
   }
 }
@@ -337,7 +319,7 @@ template <int D>
 template <class Transfer>
 void CellExchange<D>::transfer_state(Cells& cells, int cell, Transfer transfer) {
   const CellRange& range = cells.cells[cell];
-  for (auto* along : forces(cells)) transfer_nodes(*along, range, transfer);
+  for (auto& along : along_axes<D>(cells.force)) transfer_nodes(along, range, transfer);
   if (!cells.area_leakage.empty()) transfer(&cells.area_leakage[cell], 1);
   for (ElementState& state : cells.state) transfer_nodes(state.value, range, transfer);
   for (ContactMemory* memory : {&cells.contacts, &cells.wall_contacts}) {
@@ -359,8 +341,8 @@ void CellExchange<D>::transfer_state(Cells& cells, int cell, Transfer transfer) 
 template <int D>
 template <class Transfer>
 void CellExchange<D>::transfer_cell(Cells& cells, DisplacementWatch& watch, int cell, Transfer transfer) {
-  for (auto* along : places(cells)) transfer_nodes(*along, cells.cells[cell], transfer);
-  for (auto* along : velocities(cells)) transfer_nodes(*along, cells.cells[cell], transfer);
+  for (auto& along : along_axes<D>(cells.position)) transfer_nodes(along, cells.cells[cell], transfer);
+  for (auto& along : along_axes<D>(cells.velocity)) transfer_nodes(along, cells.cells[cell], transfer);
   transfer(&cells.largest_step[cell], 1);
   transfer_memory(cells, watch, cell, transfer);
   transfer_state(cells, cell, transfer);
@@ -384,7 +366,7 @@ template <int D>
 void CellExchange<D>::show_places(Cells& cells, const std::map<int, Sight>& sights) const {
   const auto transfer = [&](int, const std::vector<int>& of_peer, auto& message) {
     for (const int c : of_peer) {
-      for (auto* along : places(cells)) transfer_nodes(*along, cells.cells[c], std::ref(message));
+      for (auto& along : along_axes<D>(cells.position)) transfer_nodes(along, cells.cells[c], std::ref(message));
       message(&cells.largest_step[c], 1);
     }
   };

@@ -67,10 +67,6 @@ class CellExchange {
  private:
   class Packer;
   class Unpacker;
-  using Vectors = std::array<std::vector<double>*, D>;
-  static Vectors places(Cells& cells);
-  static Vectors velocities(Cells& cells);
-  static Vectors forces(Cells& cells);
   /// After the nodes have moved: what owners have found of them, then positions and largest steps of ghosts. Says whether
   /// lists of cells that act on each other are out of date, if there are such lists (null: none), and whether a node has
   /// left the domain. New ghosts come with what the viscosity's watch remembers of them, and cells that change hands with

@@ -153,7 +153,7 @@ CellExchange<2>::Parts OutlineTasks<T>::parts() {
           .interactions = interaction_forces_.get(),
           .viscosity = viscosity_field_.watch(),
           .force = slip_correction_ ? slip_correction_->forces_of_all()
-                                    : std::array{membranes_.force_x.data(), membranes_.force_y.data()},
+                                    : std::array{membranes_.force[0].data(), membranes_.force[1].data()},
           .base = [this](int node) { return coupling_.base(node); },
           .escaped = [this] { return coupling_.any_escaped(membranes_); }};
 }

@@ -228,8 +228,8 @@ void Solver<T, Set>::start(Solver* former) {
   }
   for (const int c : cells_.known_cells()) {
     const CellRange& cell = cells_.cells[c];
-    for (auto* velocity : {&cells_.velocity_x, &cells_.velocity_y, &cells_.velocity_z}) {
-      for (int i = cell.first; i < cell.end() && !velocity->empty(); ++i) (*velocity)[i] *= faster;
+    for (auto& velocity : cells_.velocity) {
+      for (int i = cell.first; i < cell.end() && !velocity.empty(); ++i) velocity[i] *= faster;
     }
   }
   std::fill(cells_.largest_step.begin(), cells_.largest_step.end(), 0.0);

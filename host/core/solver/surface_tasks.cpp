@@ -57,7 +57,7 @@ double energy_of_strain(const std::shared_ptr<const RestSurface>& rest, const Me
   double sum = -2 * forces.energy(one);
   for (const double side : {-1.0, 1.0}) {
     Surfaces strained = one;
-    for (double& x : strained.x) x *= 1 + side * strain;
+    for (double& x : strained.position[0]) x *= 1 + side * strain;
     sum += forces.energy(strained);
   }
   return std::abs(sum) / 2;
@@ -159,7 +159,7 @@ CellExchange<3>::Parts SurfaceTasks<T>::parts() {
           .interactions = interactions_.get(),
           .viscosity = viscosity_field_.watch(),
           .force = slip_ ? slip_->forces_of_all()
-                         : std::array{surfaces_.force_x.data(), surfaces_.force_y.data(), surfaces_.force_z.data()},
+                         : std::array{surfaces_.force[0].data(), surfaces_.force[1].data(), surfaces_.force[2].data()},
           .base = [this](int node) { return coupling_.base(node); },
           .escaped = [this] { return coupling_.any_escaped(surfaces_); }};
 }

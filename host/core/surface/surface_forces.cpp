@@ -90,8 +90,8 @@ void SurfaceForces::take_semi_implicit_steps(Surfaces& surfaces, double viscosit
     type.filter.emplace(*surfaces.types[t], viscosity, stiffness.stretching, stiffness.bending, responses[t]);
     for (std::size_t k = 0; k < 3; ++k) {
       // Over the spacing, which all stages share, a force has the unit of a tension.
-      type.held_force[k] =
-          keep_state(surfaces.state, {static_cast<int>(t), -1, "", names[k], tension_unit, {}}, 0, surfaces.x.size());
+      type.held_force[k] = keep_state(surfaces.state, {static_cast<int>(t), -1, "", names[k], tension_unit, {}}, 0,
+                                      surfaces.position[0].size());
     }
   }
 }
@@ -262,7 +262,8 @@ void SurfaceForces::run(Worker worker, Surfaces& surfaces) {
     const std::array<const double*, 3> of_corners{s.force[0].data(), s.force[1].data(), s.force[2].data()};
     for (int i = 0; i < cell.count; ++i) {
       const auto [x, y, z] = type.mesh.sums_of_corners(of_corners, i);
-      surfaces.force_x[cell.first + i] = x, surfaces.force_y[cell.first + i] = y, surfaces.force_z[cell.first + i] = z;
+      surfaces.force[0][cell.first + i] = x, surfaces.force[1][cell.first + i] = y,
+                                     surfaces.force[2][cell.first + i] = z;
     }
     if (type.filter) soften(type, surfaces, cell, s);
   }
@@ -273,15 +274,15 @@ Nodes SurfaceForces::look_ahead(const Surfaces& surfaces, const CellRange& cell,
     to.resize(s.curvature.size());
     for (int i = 0; i < cell.count; ++i) to[i] = place[cell.first + i] + step[cell.first + i];
   };
-  add(surfaces.x, surfaces.velocity_x, s.ahead[0]);
-  add(surfaces.y, surfaces.velocity_y, s.ahead[1]);
-  add(surfaces.z, surfaces.velocity_z, s.ahead[2]);
+  add(surfaces.position[0], surfaces.velocity[0], s.ahead[0]);
+  add(surfaces.position[1], surfaces.velocity[1], s.ahead[1]);
+  add(surfaces.position[2], surfaces.velocity[2], s.ahead[2]);
   return {s.ahead[0].data(), s.ahead[1].data(), s.ahead[2].data()};
 }
 
 void SurfaceForces::soften(const Type& type, Surfaces& surfaces, const CellRange& cell, Scratch& s) {
   const auto held = [&](int component) { return &surfaces.state[type.held_force[component]].value[cell.first]; };
-  type.filter->apply({&surfaces.force_x[cell.first], &surfaces.force_y[cell.first], &surfaces.force_z[cell.first]},
+  type.filter->apply({&surfaces.force[0][cell.first], &surfaces.force[1][cell.first], &surfaces.force[2][cell.first]},
                      {held(0), held(1), held(2)}, s.filtered);
 }
 

@@ -34,9 +34,11 @@ struct FindNormals {
 }  // namespace
 
 SurfaceNormals::SurfaceNormals(const Surfaces& surfaces)
-    : node_area_(surfaces.x.size()), triangle_area_(surfaces.cells.size()), of_triangle_(surfaces.cells.size()) {
+    : node_area_(surfaces.position[0].size()),
+      triangle_area_(surfaces.cells.size()),
+      of_triangle_(surfaces.cells.size()) {
   for (const auto& type : surfaces.types) meshes_.emplace_back(type->mesh);
-  for (auto& values : sum_) values = PagedArray<double>(surfaces.x.size());
+  for (auto& values : sum_) values = PagedArray<double>(surfaces.position[0].size());
 }
 
 void SurfaceNormals::measure(Worker worker, const Surfaces& surfaces, Whose whose) {

@@ -60,7 +60,7 @@ double farthest_from_axis(const Surfaces& surfaces, int cell, const Domain<3>& d
   const CellRange& range = surfaces.cells[cell];
   double farthest = 0;
   for (int i = range.first; i < range.end(); ++i)
-    farthest = std::max(farthest, std::hypot(surfaces.y[i] - y, surfaces.z[i] - z));
+    farthest = std::max(farthest, std::hypot(surfaces.position[1][i] - y, surfaces.position[2][i] - z));
   return farthest;
 }
 
@@ -69,14 +69,11 @@ void add_cell(Surfaces& surfaces, int type, const Vec<3>& center, const Eigen::M
   surfaces.cells.push_back({{.first = surfaces.node_count(), .count = rest.mesh.node_count()}, type});
   for (int i = 0; i < rest.mesh.node_count(); ++i) {
     const Vec<3> place = center + rotation * rest.nodes()[i];
-    surfaces.x.push_back(place.x());
-    surfaces.y.push_back(place.y());
-    surfaces.z.push_back(place.z());
+    surfaces.position[0].push_back(place.x());
+    surfaces.position[1].push_back(place.y());
+    surfaces.position[2].push_back(place.z());
   }
-  for (auto* values : {&surfaces.force_x, &surfaces.force_y, &surfaces.force_z, &surfaces.velocity_x,
-                       &surfaces.velocity_y, &surfaces.velocity_z}) {
-    values->resize(surfaces.x.size(), 0.0);
-  }
+  surfaces.resize_to_positions();
 }
 
 }  // namespace rouleau::core

@@ -37,12 +37,16 @@ RestSurface make_rest_surface(Mesh mesh, std::vector<double> x, std::vector<doub
 struct Surfaces : CellNodes {
   std::vector<std::shared_ptr<const RestSurface>> types;
 
-  [[nodiscard]] std::array<const double*, 3> positions() const { return {x.data(), y.data(), z.data()}; }
-  [[nodiscard]] std::array<const double*, 3> forces() const { return {force_x.data(), force_y.data(), force_z.data()}; }
+  [[nodiscard]] std::array<const double*, 3> positions() const {
+    return {position[0].data(), position[1].data(), position[2].data()};
+  }
+  [[nodiscard]] std::array<const double*, 3> forces() const {
+    return {force[0].data(), force[1].data(), force[2].data()};
+  }
   [[nodiscard]] const RestSurface& type_of(int cell) const { return *types[cells[cell].type]; }
   [[nodiscard]] Nodes nodes(int cell) const {
     const int first = cells[cell].first;
-    return {&x[first], &y[first], &z[first]};
+    return {&position[0][first], &position[1][first], &position[2][first]};
   }
 };
 

@@ -29,12 +29,12 @@ class Points {
   }
   /// Those of own cells.
   void add(const core::CellNodes& cells) {
-    const std::vector<double>* const places[] = {&cells.x, &cells.y, &cells.z};
+    const auto& places = cells.position;
     for (int c = 0; c < cells.cell_count(); ++c) {
       const core::CellRange& cell = cells.cells[c];
       for (int i = (cell.first + every_ - 1) / every_ * every_; i < cell.end() && cells.owns(c); i += every_) {
         std::array<int, D> node;
-        for (int k = 0; k < D; ++k) node[k] = domain_.wrapped(k, core::floor_int((*places[k])[i]));
+        for (int k = 0; k < D; ++k) node[k] = domain_.wrapped(k, core::floor_int(places[k][i]));
         if (*std::min_element(node.begin(), node.end()) >= 0) points_.push_back(node);
       }
     }

@@ -138,11 +138,11 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
       ranks[other].received_bytes += cell.node_count() * of_node;
     }
     const core::Box<D> block = blocks.domain(rank).block;
-    const std::vector<double>* const places[] = {&cell.x, &cell.y, &cell.z};
+    const auto& places = cell.position;
     for (int i = 0; i < cell.node_count() && crosses; ++i) {
       // Whose block has the stencil's first node, sends the node's velocity.
       std::array<int, D> node;
-      for (int k = 0; k < D; ++k) node[k] = domain.wrapped(k, core::floor_int((*places[k])[i]));
+      for (int k = 0; k < D; ++k) node[k] = domain.wrapped(k, core::floor_int(places[k][i]));
       if (*std::min_element(node.begin(), node.end()) < 0 || block.contains(node)) continue;
       ranks[blocks.owner(node)].node_velocity_bytes += of_node;
       own.received_bytes += of_node;

@@ -25,7 +25,7 @@ InteractionForces bonds_between(Membranes& m, rouleau::core::Potential bond,
 }
 
 void run_cleared(InteractionForces& forces, Membranes& m, int workers = 1) {
-  for (auto* force : {&m.force_x, &m.force_y}) std::fill(force->begin(), force->end(), 0.0);
+  for (auto* force : {&m.force[0], &m.force[1]}) std::fill(force->begin(), force->end(), 0.0);
   for (int phase = 0; phase < InteractionForces::phases; ++phase) {
     run_pass(workers, [&](Worker worker) { forces.run(worker, phase, m); });
   }
@@ -46,8 +46,8 @@ std::vector<double> densities(const InteractionForces& forces, const Membranes& 
 void move(Membranes& m, int cell, double x, double y) {
   const CellRange& range = m.cells[static_cast<std::size_t>(cell)];
   for (auto i = static_cast<std::size_t>(range.first); i < static_cast<std::size_t>(range.end()); ++i) {
-    m.x[i] += x;
-    m.y[i] += y;
+    m.position[0][i] += x;
+    m.position[1][i] += y;
   }
 }
 
@@ -186,9 +186,9 @@ TEST_CASE("bonds add to other potentials, with a cutoff of their own") {
   for (int step = 0; step < 5; ++step) run_cleared(together, both), run_cleared(first, one), run_cleared(second, other);
   CHECK(one.contacts.of_cell.empty());
   double size = 0;
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    REQUIRE(both.force_y[i] == Approx(one.force_y[i] + other.force_y[i]).margin(1e-14));
-    size += std::abs(other.force_y[i]);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    REQUIRE(both.force[1][i] == Approx(one.force[1][i] + other.force[1][i]).margin(1e-14));
+    size += std::abs(other.force[1][i]);
   }
   CHECK(size > 1e-3);
   CHECK(together.energy(both) == Approx(first.energy(one) + second.energy(other)));
@@ -205,15 +205,15 @@ TEST_CASE("bonds are the same to the last bit for one, two and three workers, an
     for (int step = 0; step < 30; ++step) {
       run_cleared(forces, m, workers);
       if (workers == 2) (void)forces.energy(m);
-      for (std::size_t i = 0; i < m.x.size(); ++i) {
-        m.x[i] += 0.5 * m.force_x[i];
-        m.y[i] += 0.5 * m.force_y[i];
+      for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+        m.position[0][i] += 0.5 * m.force[0][i];
+        m.position[1][i] += 0.5 * m.force[1][i];
       }
     }
     results.push_back(m);
   }
   for (std::size_t k = 1; k < results.size(); ++k) {
-    CHECK(results[k].x == results[0].x);
+    CHECK(results[k].position[0] == results[0].position[0]);
     for (std::size_t c = 0; c < 4; ++c) {
       const auto &found = results[k].contacts.of_cell[c], &expected = results[0].contacts.of_cell[c];
       REQUIRE(found.size() == expected.size());

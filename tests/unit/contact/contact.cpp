@@ -27,8 +27,10 @@ void run(Contacts& contacts, const Membranes& m, int workers = 1) {
 struct Rectangle {
   double x_min, x_max, y_min, y_max;
   Rectangle(const Membranes& m, const CellRange& cell) {
-    const auto [left, right] = std::minmax_element(m.x.begin() + cell.first, m.x.begin() + cell.end());
-    const auto [low, high] = std::minmax_element(m.y.begin() + cell.first, m.y.begin() + cell.end());
+    const auto [left, right] =
+        std::minmax_element(m.position[0].begin() + cell.first, m.position[0].begin() + cell.end());
+    const auto [low, high] =
+        std::minmax_element(m.position[1].begin() + cell.first, m.position[1].begin() + cell.end());
     x_min = *left, x_max = *right, y_min = *low, y_max = *high;
   }
   [[nodiscard]] double distance(double x, double y) const {
@@ -38,11 +40,13 @@ struct Rectangle {
 
 /// Smallest distance of a node to an outline moved by (dx, dy).
 double brute_distance(const Membranes& m, int node, const CellRange& other, double dx, double dy) {
-  const double px = m.x[static_cast<std::size_t>(node)] - dx, py = m.y[static_cast<std::size_t>(node)] - dy;
+  const double px = m.position[0][static_cast<std::size_t>(node)] - dx,
+               py = m.position[1][static_cast<std::size_t>(node)] - dy;
   double best = 1e300;
   for (int j = other.first; j < other.end(); ++j) {
     const auto a = static_cast<std::size_t>(j), b = static_cast<std::size_t>(other.next(j));
-    const double ux = m.x[b] - m.x[a], uy = m.y[b] - m.y[a], wx = px - m.x[a], wy = py - m.y[a];
+    const double ux = m.position[0][b] - m.position[0][a], uy = m.position[1][b] - m.position[1][a],
+                 wx = px - m.position[0][a], wy = py - m.position[1][a];
     const double square = ux * ux + uy * uy;
     const double s = square > 0 ? std::min(1.0, std::max(0.0, (wx * ux + wy * uy) / square)) : 0.0;
     best = std::min(best, std::hypot(wx - s * ux, wy - s * uy));
@@ -79,7 +83,7 @@ void compare(const Contacts& contacts, const Membranes& m, const core::Domain<2>
           const double dx = sx * domain.period(0), dy = sy * domain.period(1);
           for (int i = cell.first; i < cell.end(); ++i) {
             const auto node = static_cast<std::size_t>(i);
-            if (around.distance(m.x[node] - dx, m.y[node] - dy) > cutoff + 1e-9) continue;
+            if (around.distance(m.position[0][node] - dx, m.position[1][node] - dy) > cutoff + 1e-9) continue;
             const double d = brute_distance(m, i, other, dx, dy);
             if (d > cutoff) continue;
             ++expected;
@@ -121,16 +125,16 @@ TEST_CASE("closest points are those of brute force on moving, turning, deforming
       run(contacts, m, 1 + step % 3);
       compare(contacts, m, domain, tally);
       // Move by up to the skin since the lists were made, by rigid motion and by single nodes.
-      const auto old_x = m.x, old_y = m.y;
+      const auto old_x = m.position[0], old_y = m.position[1];
       for (const CellRange& cell : m.cells) {
         const double vx = speed * 0.06 * uniform(random), vy = speed * 0.06 * uniform(random),
                      turn = speed * 0.003 * uniform(random);
         const Eigen::Vector2d center = centroid(m, cell);
         for (int i = cell.first; i < cell.end(); ++i) {
           const auto k = static_cast<std::size_t>(i);
-          const double rx = m.x[k] - center.x(), ry = m.y[k] - center.y();
-          m.x[k] += vx - turn * ry + speed * 0.02 * uniform(random);
-          m.y[k] += vy + turn * rx + speed * 0.02 * uniform(random);
+          const double rx = m.position[0][k] - center.x(), ry = m.position[1][k] - center.y();
+          m.position[0][k] += vx - turn * ry + speed * 0.02 * uniform(random);
+          m.position[1][k] += vy + turn * rx + speed * 0.02 * uniform(random);
         }
       }
       if (known)
@@ -151,7 +155,7 @@ TEST_CASE("a node that is nowhere makes no contact and spoils no other, over per
   for (const std::size_t broken : {0u, 1u, 2u}) {
     Membranes m = biconcave_cells({{10, 10, 0}, {14, 28, 0}, {60, 40, 1}});
     const auto node = static_cast<std::size_t>(m.cells[broken].first + 3);
-    m.x[node] = std::nan("");
+    m.position[0][node] = std::nan("");
     m.largest_step.assign(3, 0.001);
     m.largest_step[broken] = std::nan("");
     Cutoffs cutoffs(1);
@@ -218,11 +222,11 @@ TEST_CASE("a remembered direction and place belong to the distance") {
       const auto k = static_cast<std::size_t>(i);
       const auto a = static_cast<std::size_t>(list.segment[k]),
                  b = static_cast<std::size_t>(m.cells[static_cast<std::size_t>(1 - c)].next(list.segment[k]));
-      const double px = (1 - list.along[k]) * m.x[a] + list.along[k] * m.x[b];
-      const double py = (1 - list.along[k]) * m.y[a] + list.along[k] * m.y[b];
+      const double px = (1 - list.along[k]) * m.position[0][a] + list.along[k] * m.position[0][b];
+      const double py = (1 - list.along[k]) * m.position[1][a] + list.along[k] * m.position[1][b];
       const auto n = static_cast<std::size_t>(list.node[k]);
-      REQUIRE(m.x[n] - px == Approx(list.distance[k] * list.direction_x[k]).margin(1e-12));
-      REQUIRE(m.y[n] - py == Approx(list.distance[k] * list.direction_y[k]).margin(1e-12));
+      REQUIRE(m.position[0][n] - px == Approx(list.distance[k] * list.direction_x[k]).margin(1e-12));
+      REQUIRE(m.position[1][n] - py == Approx(list.distance[k] * list.direction_y[k]).margin(1e-12));
       REQUIRE(std::hypot(list.direction_x[k], list.direction_y[k]) == Approx(1).epsilon(1e-14));
     }
   }

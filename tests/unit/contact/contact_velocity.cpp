@@ -41,9 +41,9 @@ Membranes facing_cells(std::mt19937& random) {
 }
 
 Membranes moved(Membranes m, double time) {
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    m.x[i] += time * m.velocity_x[i];
-    m.y[i] += time * m.velocity_y[i];
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    m.position[0][i] += time * m.velocity[0][i];
+    m.position[1][i] += time * m.velocity[1][i];
   }
   return m;
 }
@@ -54,7 +54,8 @@ TEST_CASE("the normal velocity of a contact is the rate at which its distance ch
   auto random = generator(91);
   std::uniform_real_distribution<double> uniform(-1, 1);
   Membranes m = facing_cells(random);
-  for (std::size_t i = 0; i < m.x.size(); ++i) m.velocity_x[i] = uniform(random), m.velocity_y[i] = uniform(random);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i)
+    m.velocity[0][i] = uniform(random), m.velocity[1][i] = uniform(random);
   const double step = 1e-5;
   const Found now = search(m), before = search(moved(m, -step)), after = search(moved(m, step));
   int compared = 0;
@@ -80,8 +81,8 @@ TEST_CASE("two cells that slide against each other see the same sliding, and its
   const double u = 0.3, v = -0.4;
   const CellRange& upper = m.cells[1];
   for (auto i = static_cast<std::size_t>(upper.first); i < static_cast<std::size_t>(upper.end()); ++i) {
-    m.velocity_x[i] = u;
-    m.velocity_y[i] = v;
+    m.velocity[0][i] = u;
+    m.velocity[1][i] = v;
   }
   const Found found = search(m);
   double below = 0, above = 0;
@@ -103,8 +104,8 @@ TEST_CASE("two cells that slide against each other see the same sliding, and its
 TEST_CASE("cells that move together neither approach nor slide") {
   auto random = generator(93);
   Membranes m = facing_cells(random);
-  std::fill(m.velocity_x.begin(), m.velocity_x.end(), 0.7);
-  std::fill(m.velocity_y.begin(), m.velocity_y.end(), -0.2);
+  std::fill(m.velocity[0].begin(), m.velocity[0].end(), 0.7);
+  std::fill(m.velocity[1].begin(), m.velocity[1].end(), -0.2);
   for (const ContactVelocities& velocities : search(m).velocities) {
     for (const double value : velocities.normal) CHECK(std::abs(value) < 1e-15);
     for (const double value : velocities.tangential) CHECK(std::abs(value) < 1e-15);

@@ -16,7 +16,7 @@ Membranes polygons(const std::vector<std::vector<std::pair<double, double>>>& ou
   Membranes m;
   for (const auto& outline : outlines) {
     m.cells.push_back({{m.node_count(), static_cast<int>(outline.size())}, 0, 0, 0});
-    for (const auto& [x, y] : outline) m.x.push_back(x), m.y.push_back(y);
+    for (const auto& [x, y] : outline) m.position[0].push_back(x), m.position[1].push_back(y);
   }
   return m;
 }
@@ -66,7 +66,7 @@ TEST_CASE("a cell that crosses itself is found, and a fold that only touches is 
   CHECK(crossing->place.y() == Approx(2));
   Membranes m = biconcave_cells({{0, 0, 0.4}});
   CHECK_FALSE(find_crossing(m, wide));
-  std::swap(m.x[50], m.x[51]), std::swap(m.y[50], m.y[51]);
+  std::swap(m.position[0][50], m.position[0][51]), std::swap(m.position[1][50], m.position[1][51]);
   CHECK(find_crossing(m, wide));
 }
 
@@ -100,7 +100,9 @@ TEST_CASE("crossings are found as by testing every pair of segments") {
     bool brute = false;
     const auto side = [&](int a, int b, int p) {
       const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b), k = static_cast<std::size_t>(p);
-      return (m.x[j] - m.x[i]) * (m.y[k] - m.y[i]) - (m.y[j] - m.y[i]) * (m.x[k] - m.x[i]) > 0;
+      return (m.position[0][j] - m.position[0][i]) * (m.position[1][k] - m.position[1][i]) -
+                 (m.position[1][j] - m.position[1][i]) * (m.position[0][k] - m.position[0][i]) >
+             0;
     };
     const auto next = [&](int i) { return m.cells[i < 60 ? 0 : 1].next(i); };
     for (int i = 0; i < 120; ++i) {
@@ -118,8 +120,8 @@ TEST_CASE("crossings are found as by testing every pair of segments") {
 
 TEST_CASE("positions that are not numbers are no crossing and no crash") {
   Membranes m = biconcave_cells({{0, 0, 0.0}, {0, 20, 0.1}});
-  m.x[5] = std::nan("");
-  m.y[150] = std::numeric_limits<double>::infinity();
+  m.position[0][5] = std::nan("");
+  m.position[1][150] = std::numeric_limits<double>::infinity();
   CHECK_FALSE(find_crossing(m, periodic_box(50, 50)));
 }
 

@@ -25,8 +25,8 @@ void run(InteractionForces& forces, Membranes& m, int workers = 1) {
   }
 }
 void clear(Membranes& m) {
-  std::fill(m.force_x.begin(), m.force_x.end(), 0.0);
-  std::fill(m.force_y.begin(), m.force_y.end(), 0.0);
+  std::fill(m.force[0].begin(), m.force[0].end(), 0.0);
+  std::fill(m.force[1].begin(), m.force[1].end(), 0.0);
 }
 
 }  // namespace
@@ -83,12 +83,13 @@ TEST_CASE("laws of one cell type add up") {
   membrane_forces(m, {neo_hookean(0.1), bending(0.4)}).run({}, together);
   membrane_forces(m, {neo_hookean(0.1)}).run({}, one);
   membrane_forces(m, {bending(0.4)}).run({}, two);
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    REQUIRE(together.force_x[i] == Approx(one.force_x[i] + two.force_x[i]).margin(1e-14));
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    REQUIRE(together.force[0][i] == Approx(one.force[0][i] + two.force[0][i]).margin(1e-14));
   }
   MembraneForces forces = membrane_forces(m, {neo_hookean(0.1), bending(0.4)});
   const std::vector<double> tension = forces.tensions(m, 0);
-  const double dx = m.x[1] - m.x[0], dy = m.y[1] - m.y[0], e = std::hypot(dx, dy) / m.types[0]->rest_length[0];
+  const double dx = m.position[0][1] - m.position[0][0], dy = m.position[1][1] - m.position[1][0],
+               e = std::hypot(dx, dy) / m.types[0]->rest_length[0];
   CHECK(tension[0] == Approx(0.1 * (std::pow(e, 1.5) - std::pow(e, -1.5))));
 }
 
@@ -108,20 +109,20 @@ TEST_CASE("cells feel the laws of their own type alone, in any order") {
   for (const CellRange& cell : m.cells) {
     const Membranes& expected = alone[static_cast<std::size_t>(cell.type)];
     for (auto i = static_cast<std::size_t>(cell.first); i < static_cast<std::size_t>(cell.end()); ++i) {
-      REQUIRE(m.force_x[i] == expected.force_x[i]);
-      REQUIRE(m.force_y[i] == expected.force_y[i]);
+      REQUIRE(m.force[0][i] == expected.force[0][i]);
+      REQUIRE(m.force[1][i] == expected.force[1][i]);
     }
   }
 }
 
 TEST_CASE("a cell at rest feels no force, and a law that does nothing leaves none behind") {
   Membranes m = biconcave_cells({{100, 60, 0.4}});
-  std::fill(m.force_x.begin(), m.force_x.end(), 7.0);
+  std::fill(m.force[0].begin(), m.force[0].end(), 7.0);
   membrane_forces(m, {neo_hookean(0.1), bending(0.4)}).run({}, m);
-  for (const double force : m.force_x) REQUIRE(std::abs(force) < 1e-12);
-  std::fill(m.force_x.begin(), m.force_x.end(), 7.0);
+  for (const double force : m.force[0]) REQUIRE(std::abs(force) < 1e-12);
+  std::fill(m.force[0].begin(), m.force[0].end(), 7.0);
   membrane_forces(m, {}).run({}, m);
-  for (const double force : m.force_x) REQUIRE(force == 0);
+  for (const double force : m.force[0]) REQUIRE(force == 0);
 }
 
 TEST_CASE("interaction forces are minus the gradient of the energy") {
@@ -161,10 +162,10 @@ TEST_CASE("periodic images pull as other cells at the same places would") {
   run(periodic, one);
   run(open, row);
   double size = 0;
-  for (std::size_t i = 0; i < one.x.size(); ++i) {
-    REQUIRE(one.force_x[i] == Approx(row.force_x[i + 100]).margin(1e-14));
-    REQUIRE(one.force_y[i] == Approx(row.force_y[i + 100]).margin(1e-14));
-    size += std::abs(one.force_x[i]);
+  for (std::size_t i = 0; i < one.position[0].size(); ++i) {
+    REQUIRE(one.force[0][i] == Approx(row.force[0][i + 100]).margin(1e-14));
+    REQUIRE(one.force[1][i] == Approx(row.force[1][i + 100]).margin(1e-14));
+    size += std::abs(one.force[0][i]);
   }
   CHECK(size > 1e-3);
   const ContactList list = contact_list(periodic.contacts(), one, 0);
@@ -183,10 +184,10 @@ TEST_CASE("several potentials between two types add up, each within its own cuto
       c(m, {{{1, 1}, far}}, periodic_box(10000));
   run(sum, both), run(a, first), run(b, second), run(c, other);
   double size = 0;
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    REQUIRE(both.force_y[i] == Approx(first.force_y[i] + second.force_y[i]).margin(1e-13));
-    REQUIRE(other.force_y[i] == 0);
-    size += std::abs(second.force_y[i]);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    REQUIRE(both.force[1][i] == Approx(first.force[1][i] + second.force[1][i]).margin(1e-13));
+    REQUIRE(other.force[1][i] == 0);
+    size += std::abs(second.force[1][i]);
   }
   CHECK(size > 0);
   CHECK(sum.energy(both) == Approx(a.energy(first) + b.energy(second)));
@@ -204,34 +205,35 @@ TEST_CASE("forces are the same to the last bit for one, two and three workers") 
     for (int step = 0; step < 30; ++step) {
       run_pass(workers, [&](Worker worker) { membrane.run(worker, m); });
       run(interaction, m, workers);
-      for (std::size_t i = 0; i < m.x.size(); ++i) {
-        m.x[i] += 0.2 * m.force_x[i];
-        m.y[i] += 0.2 * m.force_y[i];
+      for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+        m.position[0][i] += 0.2 * m.force[0][i];
+        m.position[1][i] += 0.2 * m.force[1][i];
       }
     }
     results.push_back(m);
   }
   for (std::size_t k = 1; k < results.size(); ++k) {
-    CHECK(results[k].x == results[0].x);
-    CHECK(results[k].force_y == results[0].force_y);
+    CHECK(results[k].position[0] == results[0].position[0]);
+    CHECK(results[k].force[1] == results[0].force[1]);
   }
 }
 
 TEST_CASE("coincident nodes and nodes on another outline give no NaN") {
   Membranes m = biconcave_cells({{0, 0, 0}, {0, 14, 0}});
-  m.x[5] = m.x[4], m.y[5] = m.y[4];  // a segment without length
+  m.position[0][5] = m.position[0][4], m.position[1][5] = m.position[1][4];  // a segment without length
   // A node in the middle of a segment of the other cell, one on a node of it, one on its segment without length.
-  m.x[150] = (m.x[20] + m.x[21]) / 2, m.y[150] = (m.y[20] + m.y[21]) / 2;
-  m.x[160] = m.x[30], m.y[160] = m.y[30];
-  m.x[170] = m.x[5], m.y[170] = m.y[5];
+  m.position[0][150] = (m.position[0][20] + m.position[0][21]) / 2,
+  m.position[1][150] = (m.position[1][20] + m.position[1][21]) / 2;
+  m.position[0][160] = m.position[0][30], m.position[1][160] = m.position[1][30];
+  m.position[0][170] = m.position[0][5], m.position[1][170] = m.position[1][5];
   membrane_forces(m, {bending(0.4)}).run({}, m);
-  for (const double force : m.force_x) REQUIRE(std::isfinite(force));
+  for (const double force : m.force[0]) REQUIRE(std::isfinite(force));
   clear(m);
   InteractionForces interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, periodic_box(10000));
   run(interaction, m);
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    REQUIRE(std::isfinite(m.force_x[i]));
-    REQUIRE(std::isfinite(m.force_y[i]));
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    REQUIRE(std::isfinite(m.force[0][i]));
+    REQUIRE(std::isfinite(m.force[1][i]));
   }
   const ForceSums sums = force_sums(m);
   CHECK(std::abs(sums.y) < 1e-12 * sums.size);
@@ -243,8 +245,8 @@ TEST_CASE("positions that are not numbers end no pass and cross no bound") {
   run(interaction, m);
   for (const double bad : {std::nan(""), 1e300, std::numeric_limits<double>::infinity()}) {
     Membranes broken = m;
-    broken.x[7] = bad;
-    broken.y[120] = -bad;
+    broken.position[0][7] = bad;
+    broken.position[1][120] = -bad;
     run(interaction, broken);
     membrane_forces(broken, {neo_hookean(0.1), bending(0.4)}).run({}, broken);
   }

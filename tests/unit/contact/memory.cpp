@@ -30,8 +30,8 @@ std::vector<double> length_rates(const Membranes& m) {
   for (const CellRange& cell : m.cells) {
     for (int i = cell.first; i < cell.end(); ++i) {
       const auto k = static_cast<std::size_t>(i), n = static_cast<std::size_t>(cell.next(i));
-      const double dx = m.x[n] - m.x[k], dy = m.y[n] - m.y[k];
-      rates.push_back((dx * (m.velocity_x[n] - m.velocity_x[k]) + dy * (m.velocity_y[n] - m.velocity_y[k])) /
+      const double dx = m.position[0][n] - m.position[0][k], dy = m.position[1][n] - m.position[1][k];
+      rates.push_back((dx * (m.velocity[0][n] - m.velocity[0][k]) + dy * (m.velocity[1][n] - m.velocity[1][k])) /
                       std::hypot(dx, dy));
     }
   }
@@ -40,14 +40,14 @@ std::vector<double> length_rates(const Membranes& m) {
 
 void set_random_velocities(Membranes& m, std::mt19937& random, double size) {
   std::normal_distribution<double> normal(0, size);
-  for (auto* velocity : {&m.velocity_x, &m.velocity_y}) {
+  for (auto* velocity : {&m.velocity[0], &m.velocity[1]}) {
     for (double& v : *velocity) v = normal(random);
   }
 }
 
 /// Every length of the membrane times a factor.
 void scale(Membranes& m, double factor) {
-  for (auto* position : {&m.x, &m.y}) {
+  for (auto* position : {&m.position[0], &m.position[1]}) {
     for (double& p : *position) p *= factor;
   }
 }
@@ -71,7 +71,7 @@ TEST_CASE("the implicit tension of a steady motion becomes viscosity times rate"
   for (const double t : tension) largest = std::max(largest, std::abs(t));
   for (std::size_t i = 0; i < tension.size(); ++i) {
     const std::size_t n = i + 1 < tension.size() ? i + 1 : 0;
-    const double length = std::hypot(m.x[n] - m.x[i], m.y[n] - m.y[i]);
+    const double length = std::hypot(m.position[0][n] - m.position[0][i], m.position[1][n] - m.position[1][i]);
     REQUIRE(tension[i] == Approx(viscosity * rates[i] / length).margin(1e-11 * largest));
   }
 }
@@ -99,13 +99,13 @@ TEST_CASE("membrane viscosity costs rigid motion nothing and leaves no net force
   deform(m, random, 3, 0.1);
   MembraneForces forces = forces_with(m, {viscous(200)});
   SECTION("rigid motion") {
-    for (std::size_t i = 0; i < m.x.size(); ++i) {
-      m.velocity_x[i] = 0.01 - 0.002 * m.y[i];
-      m.velocity_y[i] = -0.02 + 0.002 * m.x[i];
+    for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+      m.velocity[0][i] = 0.01 - 0.002 * m.position[1][i];
+      m.velocity[1][i] = -0.02 + 0.002 * m.position[0][i];
     }
     forces.run({}, m);
     // Rates are differences of velocities of size 0.4: rounding, times the viscosity over a length near 1.
-    for (const double force : m.force_x) REQUIRE(std::abs(force) < 200 * 1e-15);
+    for (const double force : m.force[0]) REQUIRE(std::abs(force) < 200 * 1e-15);
   }
   SECTION("any motion") {
     for (int step = 0; step < 10; ++step) {
@@ -149,11 +149,12 @@ TEST_CASE("a Maxwell branch is a spring when it relaxes slowly and a dashpot whe
   SECTION("fast") {
     MembraneForces forces = forces_with(m, {maxwell(0.2, 10)});
     for (int step = 0; step < 400; ++step) {
-      for (std::size_t i = 0; i < m.x.size(); ++i) {  // d stretch / dt = rate: every length grows by rate in a step
-        m.velocity_x[i] = rate * m.x[i] / (1 + rate * step);
-        m.velocity_y[i] = rate * m.y[i] / (1 + rate * step);
-        m.x[i] += m.velocity_x[i];
-        m.y[i] += m.velocity_y[i];
+      for (std::size_t i = 0; i < m.position[0].size();
+           ++i) {  // d stretch / dt = rate: every length grows by rate in a step
+        m.velocity[0][i] = rate * m.position[0][i] / (1 + rate * step);
+        m.velocity[1][i] = rate * m.position[1][i] / (1 + rate * step);
+        m.position[0][i] += m.velocity[0][i];
+        m.position[1][i] += m.velocity[1][i];
       }
       forces.run({}, m);
     }
@@ -172,9 +173,9 @@ TEST_CASE("the work done on a Maxwell branch is what its spring holds and its da
     const double rest = m.cells[0].rest_perimeter;
     for (int step = 1; step <= steps_per_cycle; ++step) {
       const double next = 1 + 0.1 * std::sin(6.283185307179586 * step / steps_per_cycle);
-      for (std::size_t i = 0; i < m.x.size(); ++i) {
-        m.velocity_x[i] = m.x[i] * (next / stretch - 1);
-        m.velocity_y[i] = m.y[i] * (next / stretch - 1);
+      for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+        m.velocity[0][i] = m.position[0][i] * (next / stretch - 1);
+        m.velocity[1][i] = m.position[1][i] * (next / stretch - 1);
       }
       scale(m, next / stretch);
       // Velocities are the displacement of the last step, along the same directions.
@@ -212,9 +213,10 @@ TEST_CASE("who looks at energies and tensions does not make time pass") {
   for (std::size_t i = 0; i < first.size(); ++i) {
     const std::size_t b = i > 0 ? i - 1 : first.size() - 1, n = i + 1 < first.size() ? i + 1 : 0;
     const auto along = [&](std::size_t from, std::size_t to) {
-      return (m.x[to] - m.x[from]) / std::hypot(m.x[to] - m.x[from], m.y[to] - m.y[from]);
+      return (m.position[0][to] - m.position[0][from]) /
+             std::hypot(m.position[0][to] - m.position[0][from], m.position[1][to] - m.position[1][from]);
     };
-    worst = std::max(worst, std::abs(m.force_x[i] - first[i] * along(i, n) + first[b] * along(b, i)));
+    worst = std::max(worst, std::abs(m.force[0][i] - first[i] * along(i, n) + first[b] * along(b, i)));
   }
   CHECK(worst < 1e-13);
 }
@@ -238,12 +240,12 @@ TEST_CASE("state goes on in a stage with another time step") {
   scale(m, 1.1);
   for (int step = 0; step < 3; ++step) first.run({}, m);
   for (ElementState& variable : m.state) {
-    if (variable.name == "rate_tension") variable.value.assign(m.x.size(), 0.32);
+    if (variable.name == "rate_tension") variable.value.assign(m.position[0].size(), 0.32);
   }
   MembraneForces second = forces_with(m, {maxwell(0.2, 5, after), viscous(3, after)}, after.unit(dimension::tension));
   REQUIRE(m.state.size() == 2);
   CHECK(state(m, "rate_tension")[5] == Approx(0.02));
-  m.state[1].value.assign(m.x.size(), 0.0);
+  m.state[1].value.assign(m.position[0].size(), 0.0);
   for (int step = 0; step < 8; ++step) second.run({}, m);  // 2 s more
   const std::vector<double> tension = second.tensions(m, 0);
   for (const double t : tension) REQUIRE(after.to_si(t, dimension::tension) == Approx(0.02 * std::exp(-5 / 5.0)));
@@ -259,16 +261,16 @@ TEST_CASE("forces and state are the same to the last bit for one, two and three 
     MembraneForces forces = forces_with(m, {neo_hookean(0.1), maxwell(0.2, 7), viscous(50), bending(0.1)});
     for (int step = 0; step < 30; ++step) {
       run_pass(workers, [&](Worker worker) { forces.run(worker, m); });
-      for (std::size_t i = 0; i < m.x.size(); ++i) {
-        m.x[i] += m.velocity_x[i] = 0.02 * m.force_x[i];
-        m.y[i] += m.velocity_y[i] = 0.02 * m.force_y[i];
+      for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+        m.position[0][i] += m.velocity[0][i] = 0.02 * m.force[0][i];
+        m.position[1][i] += m.velocity[1][i] = 0.02 * m.force[1][i];
       }
     }
     results.push_back(m);
   }
   for (std::size_t k = 1; k < results.size(); ++k) {
-    CHECK(results[k].x == results[0].x);
-    CHECK(results[k].force_y == results[0].force_y);
+    CHECK(results[k].position[0] == results[0].position[0]);
+    CHECK(results[k].force[1] == results[0].force[1]);
     for (std::size_t v = 0; v < 2; ++v) CHECK(results[k].state[v].value == results[0].state[v].value);
   }
 }

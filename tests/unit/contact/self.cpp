@@ -82,7 +82,7 @@ TEST_CASE("the faces of a flat cell repel each other as those of two cells at th
   for (const int phase : {0, 1, 2}) run_pass(1, [&](Worker worker) { other.run(worker, phase, two); });
   const auto force_at = [](const Membranes& m, double x, double y) {
     for (int i = 0; i < m.node_count(); ++i)
-      if (m.x[i] == x && std::abs(m.y[i] - y) < 1e-12) return m.force_y[i];
+      if (m.position[0][i] == x && std::abs(m.position[1][i] - y) < 1e-12) return m.force[1][i];
     return std::nan("");
   };
   for (double x = 15; x <= 45; x += 1) {
@@ -100,10 +100,11 @@ TEST_CASE("a circle wider than the cutoff does nothing to itself, and one that w
   CHECK(none.energy(wide) == 0);
   Membranes narrow = circle(20, 126);
   SelfContacts some(narrow, {{0, repulsion(0.3, 38)}});
-  for (int i = 0; i < narrow.node_count(); ++i) narrow.x[i] *= 0.6;  // now 24 wide, as many spacings apart as before
+  for (int i = 0; i < narrow.node_count(); ++i)
+    narrow.position[0][i] *= 0.6;  // now 24 wide, as many spacings apart as before
   run(some, narrow);
   for (int i = 0; i < narrow.node_count(); ++i)
-    if (std::abs(narrow.x[i]) > 8) REQUIRE(narrow.force_x[i] * narrow.x[i] > 0);
+    if (std::abs(narrow.position[0][i]) > 8) REQUIRE(narrow.force[0][i] * narrow.position[0][i] > 0);
 }
 
 TEST_CASE(
@@ -113,15 +114,16 @@ TEST_CASE(
   m.cells[2].type = 1;
   deform(m, random, 1.5);
   Membranes again = m, alone = biconcave_cells({{40, 30, 0}});
-  for (int i = 0; i < alone.node_count(); ++i) alone.x[i] = m.x[i], alone.y[i] = m.y[i];
+  for (int i = 0; i < alone.node_count(); ++i)
+    alone.position[0][i] = m.position[0][i], alone.position[1][i] = m.position[1][i];
   SelfContacts self(m, {{0, repulsion(0.4, 7)}}), same(again, {{0, repulsion(0.4, 7)}}),
       first(alone, {{0, repulsion(0.4, 7)}});
   run(self, m), run(same, again, 3), run(first, alone);
-  CHECK(m.force_x == again.force_x);
-  CHECK(m.force_y == again.force_y);
+  CHECK(m.force[0] == again.force[0]);
+  CHECK(m.force[1] == again.force[1]);
   for (int i = 0; i < m.node_count(); ++i) {
-    if (i < m.cells[0].end()) REQUIRE(m.force_y[i] == alone.force_y[i]);
-    if (i >= m.cells[2].first) REQUIRE(m.force_y[i] == 0);
+    if (i < m.cells[0].end()) REQUIRE(m.force[1][i] == alone.force[1][i]);
+    if (i >= m.cells[2].first) REQUIRE(m.force[1][i] == 0);
   }
   CHECK(force_sums(alone).size > 0);
 }
@@ -139,7 +141,7 @@ TEST_CASE("cells smaller than what keeps parts apart, and nodes on the other fac
   CHECK(force_sums(small).size == 0);
   Membranes flat = flat_cell(60, 3);
   SelfContacts touching(flat, {{0, repulsion(0.3, 4)}});
-  for (double& y : flat.y) y = 0;
+  for (double& y : flat.position[1]) y = 0;
   run(touching, flat);
   CHECK(std::isfinite(force_sums(flat).size));
   CHECK(touching.energy(flat) > 0);

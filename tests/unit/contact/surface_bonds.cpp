@@ -48,7 +48,7 @@ Surfaces spheres(const std::vector<Vec<3>>& centers) {
 Surfaces neighbours() { return spheres({{8, 9.5, 3}, {8.5, 9.1, 12.4}}); }
 
 void clear_forces(Surfaces& s) {
-  for (auto* force : {&s.force_x, &s.force_y, &s.force_z}) std::fill(force->begin(), force->end(), 0.0);
+  for (auto& force : s.force) std::fill(force.begin(), force.end(), 0.0);
 }
 void run(SurfaceInteractions& forces, Surfaces& s, int workers = 1) {
   clear_forces(s);
@@ -66,7 +66,8 @@ double value_at(const std::vector<ContactState>& states, int node, int other, co
 }
 
 void move(Surfaces& s, int cell, const Vec<3>& by) {
-  for (int i = s.cells[cell].first; i < s.cells[cell].end(); ++i) s.x[i] += by.x(), s.y[i] += by.y(), s.z[i] += by.z();
+  for (int i = s.cells[cell].first; i < s.cells[cell].end(); ++i)
+    s.position[0][i] += by.x(), s.position[1][i] += by.y(), s.position[2][i] += by.z();
 }
 
 /// Gives nodes bonds that vanish towards the cutoff.
@@ -150,27 +151,27 @@ TEST_CASE("forces of bonds between surfaces are minus the gradient of their ener
   double largest = 0;
   Vec<3> net = Vec<3>::Zero();
   for (int i = 0; i < s.node_count(); ++i) {
-    const Vec<3> force(s.force_x[i], s.force_y[i], s.force_z[i]);
+    const Vec<3> force(s.force[0][i], s.force[1][i], s.force[2][i]);
     largest = std::max(largest, force.norm());
     net += force;
   }
   REQUIRE(largest > 1e-2);
   CHECK(net.norm() < 1e-12 * largest);
   constexpr double h = 1e-5;
-  std::vector<double>* const places[] = {&s.x, &s.y, &s.z};
-  const std::vector<double>* const found[] = {&at.force_x, &at.force_y, &at.force_z};
+  auto& places = s.position;
+  const auto& found = at.force;
   for (int i = 0; i < s.node_count(); i += 7) {
     for (int k = 0; k < 3; ++k) {
-      const double here = (*places[k])[i];
+      const double here = places[k][i];
       double energy[2];
       for (const int side : {0, 1}) {
-        (*places[k])[i] = here + (side == 0 ? -h : h);
+        places[k][i] = here + (side == 0 ? -h : h);
         s.contacts = bonds;  // whoever crosses the cutoff has none, and gets them back
         run(forces, s);
         energy[side] = forces.energy(s);
       }
-      (*places[k])[i] = here;
-      CHECK(std::abs((energy[0] - energy[1]) / (2 * h) - (*found[k])[i]) < 1e-7 * largest);
+      places[k][i] = here;
+      CHECK(std::abs((energy[0] - energy[1]) / (2 * h) - found[k][i]) < 1e-7 * largest);
     }
   }
 }
@@ -187,8 +188,8 @@ TEST_CASE("bonds of surfaces add to other potentials, and looking at them change
   CHECK(one.contacts.of_cell.empty());
   double size = 0;
   for (int i = 0; i < both.node_count(); ++i) {
-    REQUIRE(both.force_z[i] == Approx(one.force_z[i] + other.force_z[i]).margin(1e-14));
-    size += std::abs(other.force_z[i]);
+    REQUIRE(both.force[2][i] == Approx(one.force[2][i] + other.force[2][i]).margin(1e-14));
+    size += std::abs(other.force[2][i]);
   }
   CHECK(size > 1e-3);
   CHECK(together.energy(both) == Approx(first.energy(one) + second.energy(other)));
@@ -207,7 +208,7 @@ TEST_CASE("each wall has bonds of its own with a surface") {
   REQUIRE(s.wall_contacts.of_cell[0].size() == 2);
   int seen = 0;
   for (int i = 0; i < s.node_count(); ++i) {
-    for (const auto& [wall, distance] : {std::pair(0, s.y[i] + 0.5), std::pair(3, 21.5 - s.z[i])}) {
+    for (const auto& [wall, distance] : {std::pair(0, s.position[1][i] + 0.5), std::pair(3, 21.5 - s.position[2][i])}) {
       if (distance > cutoff) continue;
       CHECK(value_at(s.wall_contacts.of_cell[0], i, wall, {}) == Approx(bonds_after(60, distance)).epsilon(1e-11));
       ++seen;
@@ -224,13 +225,13 @@ TEST_CASE("surfaces that slide against each other see the part of the velocity t
   Surfaces s = neighbours();
   const Vec<3> motion(0.3, -0.2, 0.5);  // of the second cell; the first rests
   for (int i = s.cells[1].first; i < s.node_count(); ++i)
-    s.velocity_x[i] = motion.x(), s.velocity_y[i] = motion.y(), s.velocity_z[i] = motion.z();
+    s.velocity[0][i] = motion.x(), s.velocity[1][i] = motion.y(), s.velocity[2][i] = motion.z();
   SurfaceInteractions forces(s, {{{0, 0}, test::rubbing(2, cutoff)}}, domain);
   CHECK(forces.needs_velocities());
   run(forces, s);
   const SurfaceContacts all = SurfaceContacts::within(cutoff, s, domain);
   Vec<3> on_first = Vec<3>::Zero(), expected = Vec<3>::Zero();
-  for (int i = 0; i < s.cells[1].first; ++i) on_first += Vec<3>(s.force_x[i], s.force_y[i], s.force_z[i]);
+  for (int i = 0; i < s.cells[1].first; ++i) on_first += Vec<3>(s.force[0][i], s.force[1][i], s.force[2][i]);
   double slowest = 1, fastest = 0;
   for (const int cell : {0, 1}) {
     std::vector<SurfaceContact> found;
@@ -254,21 +255,22 @@ TEST_CASE("the normal velocity at a contact of surfaces is the rate at which the
   Surfaces s = neighbours();
   auto random = test::generator(71);
   std::uniform_real_distribution<double> any(-1, 1);
-  for (auto* velocity : {&s.velocity_x, &s.velocity_y, &s.velocity_z})
-    for (double& v : *velocity) v = any(random);
+  for (auto& velocity : s.velocity)
+    for (double& v : velocity) v = any(random);
   SurfaceInteractions forces(s, {{{0, 0}, test::damper(2, cutoff, "normal_velocity")}}, domain);
   CHECK(forces.needs_velocities());
   run(forces, s);
   // What is taken out of the motion is the sum over all contacts of A/2 c (d distance / dt)^2.
   double power = 0, expected = 0, net = 0, size = 0;
   for (int i = 0; i < s.node_count(); ++i) {
-    power -= s.force_x[i] * s.velocity_x[i] + s.force_y[i] * s.velocity_y[i] + s.force_z[i] * s.velocity_z[i];
-    net += s.force_y[i], size += std::abs(s.force_y[i]);
+    power -= s.force[0][i] * s.velocity[0][i] + s.force[1][i] * s.velocity[1][i] + s.force[2][i] * s.velocity[2][i];
+    net += s.force[1][i], size += std::abs(s.force[1][i]);
   }
   const auto contacts_at = [&](double time) {
     Surfaces moved = s;
     for (int i = 0; i < s.node_count(); ++i) {
-      moved.x[i] += time * s.velocity_x[i], moved.y[i] += time * s.velocity_y[i], moved.z[i] += time * s.velocity_z[i];
+      moved.position[0][i] += time * s.velocity[0][i], moved.position[1][i] += time * s.velocity[1][i],
+          moved.position[2][i] += time * s.velocity[2][i];
     }
     const SurfaceContacts all = SurfaceContacts::within(cutoff + 0.1, moved, domain);
     std::vector<SurfaceContact> found[2];

@@ -33,8 +33,8 @@ Surfaces pair(std::mt19937& random, double apart = 1.2) {
       towards = Vec<3>(any(random), any(random), any(random)).normalized();
   add_cell(s, 0, center);
   add_cell(s, 1, center + (4.2 + apart) * towards, Eigen::Quaterniond::UnitRandom().toRotationMatrix());
-  for (auto* places : {&s.x, &s.y, &s.z}) {
-    for (double& place : *places) place += 0.05 * any(random);
+  for (auto& places : s.position) {
+    for (double& place : places) place += 0.05 * any(random);
   }
   return s;
 }
@@ -110,7 +110,7 @@ TEST_CASE("contacts of surfaces are the closest of all triangles, while cells mo
         const std::vector<SurfaceContact>& list = lists[cell];
         std::size_t next = 0;
         for (int node = s.cells[cell].first; node < s.cells[cell].end(); ++node) {
-          const Vec<3> place(s.x[node], s.y[node], s.z[node]);
+          const Vec<3> place(s.position[0][node], s.position[1][node], s.position[2][node]);
           for (int other = 0; other < 2; ++other) {
             for (int x = -1; x <= 1; ++x) {
               for (int z = -2; z <= 1; ++z) {
@@ -131,7 +131,8 @@ TEST_CASE("contacts of surfaces are the closest of all triangles, while cells mo
         REQUIRE(next == list.size());
       }
       const Vec<3> way = 0.05 * Vec<3>(any(random), any(random), any(random));
-      for (int i = s.cells[1].first; i < s.cells[1].end(); ++i) s.x[i] += way.x(), s.y[i] += way.y(), s.z[i] += way.z();
+      for (int i = s.cells[1].first; i < s.cells[1].end(); ++i)
+        s.position[0][i] += way.x(), s.position[1][i] += way.y(), s.position[2][i] += way.z();
       s.largest_step[1] = way.norm() * (1 + 1e-12);
     }
     renewals += contacts.renewals();
@@ -161,7 +162,7 @@ TEST_CASE("in a box narrower than the cutoff all images of a surface count") {
         for (int other = 0; other < 2; ++other) {
           for (int z = -3; z <= 3; ++z) {
             if (other == cell && z == 0) continue;
-            const Vec<3> moved(s.x[node], s.y[node], s.z[node] - 8 * z);
+            const Vec<3> moved(s.position[0][node], s.position[1][node], s.position[2][node] - 8 * z);
             const Nodes nodes = s.nodes(other);
             double nearest = 1e300;
             for (const auto& [i, j, k] : s.type_of(other).mesh.triangles())
@@ -187,8 +188,8 @@ TEST_CASE(
     const Surfaces at = s;
     double largest = 0, net[3] = {0, 0, 0};
     for (int i = 0; i < s.node_count(); ++i) {
-      largest = std::max({largest, std::abs(s.force_x[i]), std::abs(s.force_y[i]), std::abs(s.force_z[i])});
-      net[0] += s.force_x[i], net[1] += s.force_y[i], net[2] += s.force_z[i];
+      largest = std::max({largest, std::abs(s.force[0][i]), std::abs(s.force[1][i]), std::abs(s.force[2][i])});
+      net[0] += s.force[0][i], net[1] += s.force[1][i], net[2] += s.force[2][i];
     }
     REQUIRE(largest > 1e-4);
     for (const double sum : net) CHECK(std::abs(sum) < 1e-12 * largest);
@@ -197,9 +198,9 @@ TEST_CASE(
     SurfaceInteractions fresh(s, {interaction}, domain);
     Surfaces again = s;
     run(fresh, again, 2);
-    CHECK(s.force_x == again.force_x);
-    CHECK(s.force_y == again.force_y);
-    CHECK(s.force_z == again.force_z);
+    CHECK(s.force[0] == again.force[0]);
+    CHECK(s.force[1] == again.force[1]);
+    CHECK(s.force[2] == again.force[2]);
   }
 }
 
@@ -207,14 +208,15 @@ TEST_CASE("two bodies that attract each other feel neither a net force nor a tor
   std::mt19937 random(4);
   const Domain<3> open{{60, 60, 60}, {true, true, true}};
   Surfaces s = pair(random, 0.4);
-  for (double& x : s.x) x += 30;
-  for (double& y : s.y) y += 20;
+  for (double& x : s.position[0]) x += 30;
+  for (double& y : s.position[1]) y += 20;
   SurfaceInteractions forces(s, {{{0, 1}, test::spring_potential(0.03, 1.5, 3)}}, open);
   run(forces, s);
   Vec<3> force = Vec<3>::Zero(), torque = Vec<3>::Zero();
   double largest = 0;
   for (int i = 0; i < s.node_count(); ++i) {
-    const Vec<3> f(s.force_x[i], s.force_y[i], s.force_z[i]), place(s.x[i], s.y[i], s.z[i]);
+    const Vec<3> f(s.force[0][i], s.force[1][i], s.force[2][i]),
+        place(s.position[0][i], s.position[1][i], s.position[2][i]);
     force += f, torque += place.cross(f);
     largest = std::max(largest, f.norm());
   }

@@ -12,7 +12,7 @@ namespace rouleau::test {
 
 /// The interactions alone, a phase at a time, each by all workers, as barriers would have it.
 inline void run(core::SurfaceInteractions& forces, core::Surfaces& s, int workers = 1) {
-  for (auto* force : {&s.force_x, &s.force_y, &s.force_z}) std::fill(force->begin(), force->end(), 0.0);
+  for (auto& force : s.force) std::fill(force.begin(), force.end(), 0.0);
   for (int phase = 0; phase < 3; ++phase) {
     for (int worker = 0; worker < workers; ++worker) forces.run({worker, workers}, phase, s);
   }
@@ -22,22 +22,22 @@ inline void run(core::SurfaceInteractions& forces, core::Surfaces& s, int worker
 inline void check_gradient(core::SurfaceInteractions& forces, core::Surfaces& s, double largest, std::mt19937& random) {
   run(forces, s);
   const core::Surfaces at = s;
-  const std::vector<double>* const found[] = {&at.force_x, &at.force_y, &at.force_z};
-  std::vector<double>* const places[] = {&s.x, &s.y, &s.z};
+  const auto& found = at.force;
+  auto& places = s.position;
   std::uniform_int_distribution<int> node(0, s.node_count() - 1);
   for (int check = 0; check < 40; ++check) {
     const int i = node(random);
     constexpr double h = 1e-5;
     for (int k = 0; k < 3; ++k) {
-      const double here = (*places[k])[i];
+      const double here = places[k][i];
       double energy[2];
       for (int side = 0; side < 2; ++side) {
-        (*places[k])[i] = here + (side == 0 ? -h : h);
+        places[k][i] = here + (side == 0 ? -h : h);
         run(forces, s);
         energy[side] = forces.energy(s);
       }
-      (*places[k])[i] = here;
-      CHECK(std::abs(-(energy[1] - energy[0]) / (2 * h) - (*found[k])[i]) < 1e-7 * largest);
+      places[k][i] = here;
+      CHECK(std::abs(-(energy[1] - energy[0]) / (2 * h) - found[k][i]) < 1e-7 * largest);
     }
   }
 }

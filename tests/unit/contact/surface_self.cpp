@@ -32,8 +32,8 @@ SurfaceInteractions within(Surfaces& s, double stiffness, double rest, double cu
   return {s, {}, domain, {{0, test::spring_potential(stiffness, rest, cutoff)}}};
 }
 
-Vec<3> force_on(const Surfaces& s, int i) { return {s.force_x[i], s.force_y[i], s.force_z[i]}; }
-Vec<3> place_of(const Surfaces& s, int i) { return {s.x[i], s.y[i], s.z[i]}; }
+Vec<3> force_on(const Surfaces& s, int i) { return {s.force[0][i], s.force[1][i], s.force[2][i]}; }
+Vec<3> place_of(const Surfaces& s, int i) { return {s.position[0][i], s.position[1][i], s.position[2][i]}; }
 double largest_force(const Surfaces& s) {
   double largest = 0;
   for (int i = 0; i < s.node_count(); ++i) largest = std::max(largest, force_on(s, i).norm());
@@ -110,8 +110,8 @@ TEST_CASE(
     // The faces come nearer to each other, with some noise.
     double most = 0;
     for (int i = 0; i < s.node_count(); ++i) {
-      const Vec<3> move(0.01 * any(random), -0.006 * (s.y[i] - 20) + 0.01 * any(random), 0.01 * any(random));
-      s.x[i] += move.x(), s.y[i] += move.y(), s.z[i] += move.z();
+      const Vec<3> move(0.01 * any(random), -0.006 * (s.position[1][i] - 20) + 0.01 * any(random), 0.01 * any(random));
+      s.position[0][i] += move.x(), s.position[1][i] += move.y(), s.position[2][i] += move.z();
       most = std::max(most, move.norm());
     }
     s.largest_step[0] = most;
@@ -125,8 +125,8 @@ TEST_CASE(
   std::mt19937 random(22);
   std::uniform_real_distribution<double> any(-1, 1);
   Surfaces s = of_shape(shape::biconcave_disc(6, 5));
-  for (auto* places : {&s.x, &s.y, &s.z}) {
-    for (double& place : *places) place += 0.05 * any(random);
+  for (auto& places : s.position) {
+    for (double& place : places) place += 0.05 * any(random);
   }
   SurfaceInteractions forces = within(s, 0.03, 1.5, 2.5);
   run(forces, s);
@@ -139,9 +139,9 @@ TEST_CASE(
   CHECK(torque.norm() < 1e-12 * largest * 40);
   check_gradient(forces, s, largest, random);
   run(forces, s, 3);
-  CHECK(s.force_x == at.force_x);
-  CHECK(s.force_y == at.force_y);
-  CHECK(s.force_z == at.force_z);
+  CHECK(s.force[0] == at.force[0]);
+  CHECK(s.force[1] == at.force[1]);
+  CHECK(s.force[2] == at.force[2]);
 }
 
 TEST_CASE("a sphere wider than the cutoff does nothing to itself, and one that was squeezed is pushed open") {
@@ -152,13 +152,13 @@ TEST_CASE("a sphere wider than the cutoff does nothing to itself, and one that w
   CHECK(none.energy(round) == 0);
   Surfaces squeezed = sphere(8, 8);
   SurfaceInteractions some = within(squeezed, 0.1, 6, 6);
-  for (double& z : squeezed.z) z = 20 + 0.25 * (z - 20);  // 4 spacings thick in the middle
+  for (double& z : squeezed.position[2]) z = 20 + 0.25 * (z - 20);  // 4 spacings thick in the middle
   run(some, squeezed);
   int pushed = 0;
   for (int i = 0; i < squeezed.node_count(); ++i) {
-    const double height = squeezed.z[i] - 20;
-    if (std::hypot(squeezed.x[i] - 20, squeezed.y[i] - 20) > 4 || std::abs(height) < 1) continue;
-    REQUIRE(squeezed.force_z[i] * height > 0);
+    const double height = squeezed.position[2][i] - 20;
+    if (std::hypot(squeezed.position[0][i] - 20, squeezed.position[1][i] - 20) > 4 || std::abs(height) < 1) continue;
+    REQUIRE(squeezed.force[2][i] * height > 0);
     ++pushed;
   }
   CHECK(pushed > 50);
@@ -167,14 +167,14 @@ TEST_CASE("a sphere wider than the cutoff does nothing to itself, and one that w
 TEST_CASE("faces that are nearly flat push each other by their area times the potential's force") {
   Surfaces s = sphere(8, 12);
   SurfaceInteractions forces = within(s, 0.1, 2, 2);
-  for (double& z : s.z) z = 20 + 0.05 * (z - 20);  // 0.8 spacings thick in the middle
+  for (double& z : s.position[2]) z = 20 + 0.05 * (z - 20);  // 0.8 spacings thick in the middle
   run(forces, s);
   const RestSurface& rest = s.type_of(0);
   double pushes = 0, springs = 0;
   for (int i = 0; i < s.node_count(); ++i) {
-    const double height = s.z[i] - 20;
-    if (std::hypot(s.x[i] - 20, s.y[i] - 20) > 4 || height < 0) continue;
-    pushes += s.force_z[i];
+    const double height = s.position[2][i] - 20;
+    if (std::hypot(s.position[0][i] - 20, s.position[1][i] - 20) > 4 || height < 0) continue;
+    pushes += s.force[2][i];
     springs += rest.node_area[i] * 0.1 * (2 - 2 * height);
   }
   CHECK(pushes == Approx(springs).epsilon(0.02));

@@ -27,7 +27,7 @@ SurfaceWallContacts walls(Surfaces& s) { return {s, {{0, test::spring_potential(
 double energy(Surfaces s) { return walls(s).energy(s); }
 
 void act(SurfaceWallContacts& contacts, Surfaces& s, int workers = 1) {
-  for (auto* force : {&s.force_x, &s.force_y, &s.force_z}) std::fill(force->begin(), force->end(), 0.0);
+  for (auto& force : s.force) std::fill(force.begin(), force.end(), 0.0);
   for (int worker = 0; worker < workers; ++worker) contacts.run({worker, workers}, s);
 }
 
@@ -63,13 +63,13 @@ TEST_CASE("the wall of a tube acts along its radius") {
   Surfaces s = sphere(16, of_sphere, {3, 9.5, 10.5});
   SurfaceWallContacts tube(s, {{0, test::spring_potential(stiffness, rest, cutoff)}}, domain, radius);
   CHECK(tube.energy(s) == Approx(exact).epsilon(0.01));
-  for (double& y : s.y) y += 0.7;
+  for (double& y : s.position[1]) y += 0.7;
   act(tube, s);
   const Surfaces at = s;
   constexpr double h = 1e-5;
   for (int i = 0; i < s.node_count(); i += 29) {
-    CHECK(s.force_x[i] == 0);
-    for (const auto& [places, found] : {std::pair(&s.y, &at.force_y), {&s.z, &at.force_z}}) {
+    CHECK(s.force[0][i] == 0);
+    for (const auto& [places, found] : {std::pair(&s.position[1], &at.force[1]), {&s.position[2], &at.force[2]}}) {
       const double here = (*places)[i];
       (*places)[i] = here + h;
       const double above = tube.energy(s);
@@ -89,15 +89,15 @@ TEST_CASE("forces of walls on surfaces are minus the gradient of their energy, w
   const Surfaces at = s;
   double largest = 0, along_y = 0;
   for (int i = 0; i < s.node_count(); ++i) {
-    largest = std::max({largest, std::abs(s.force_y[i]), std::abs(s.force_z[i])});
-    along_y += s.force_y[i];
-    CHECK(s.force_x[i] == 0);
+    largest = std::max({largest, std::abs(s.force[1][i]), std::abs(s.force[2][i])});
+    along_y += s.force[1][i];
+    CHECK(s.force[0][i] == 0);
   }
   REQUIRE(largest > 1e-3);
   CHECK(contacts.net_force(s) == Approx(along_y));
   constexpr double h = 1e-5;
   for (int i = 0; i < s.node_count(); i += 3) {
-    for (const auto& [places, found] : {std::pair(&s.y, &at.force_y), {&s.z, &at.force_z}}) {
+    for (const auto& [places, found] : {std::pair(&s.position[1], &at.force[1]), {&s.position[2], &at.force[2]}}) {
       const double here = (*places)[i];
       (*places)[i] = here + h;
       const double above = contacts.energy(s);
@@ -108,8 +108,8 @@ TEST_CASE("forces of walls on surfaces are minus the gradient of their energy, w
     }
   }
   act(contacts, s, 2);
-  CHECK(s.force_y == at.force_y);
-  CHECK(s.force_z == at.force_z);
+  CHECK(s.force[1] == at.force[1]);
+  CHECK(s.force[2] == at.force[2]);
 }
 
 TEST_CASE("walls act on surfaces where there are walls, and do not rub") {
@@ -123,18 +123,18 @@ TEST_CASE("walls act on surfaces where there are walls, and do not rub") {
 
 TEST_CASE("a potential is given the velocity at which a surface leaves the wall that it is near") {
   Surfaces s = sphere(6, 4, {3, 4.3, 17.1});  // in a corner, above y = -0.5 and below z = 21.5
-  std::fill(s.velocity_x.begin(), s.velocity_x.end(), 0.5);
-  std::fill(s.velocity_y.begin(), s.velocity_y.end(), 0.01);
-  std::fill(s.velocity_z.begin(), s.velocity_z.end(), 0.02);
+  std::fill(s.velocity[0].begin(), s.velocity[0].end(), 0.5);
+  std::fill(s.velocity[1].begin(), s.velocity[1].end(), 0.01);
+  std::fill(s.velocity[2].begin(), s.velocity[2].end(), 0.02);
   SurfaceWallContacts contacts(s, {{0, test::damper(3, 2, "normal_velocity")}}, domain);
   act(contacts, s);
   const std::vector<double>& area = s.type_of(0).node_area;
   double size_y = 0, size_z = 0;
   for (int i = 0; i < s.node_count(); ++i) {
-    CHECK(s.force_x[i] == 0);
-    CHECK(s.force_y[i] == Approx(s.y[i] + 0.5 <= 2 ? -3 * 0.01 * area[i] : 0));  // against the motion
-    CHECK(s.force_z[i] == Approx(21.5 - s.z[i] <= 2 ? -3 * 0.02 * area[i] : 0));
-    size_y += std::abs(s.force_y[i]), size_z += std::abs(s.force_z[i]);
+    CHECK(s.force[0][i] == 0);
+    CHECK(s.force[1][i] == Approx(s.position[1][i] + 0.5 <= 2 ? -3 * 0.01 * area[i] : 0));  // against the motion
+    CHECK(s.force[2][i] == Approx(21.5 - s.position[2][i] <= 2 ? -3 * 0.02 * area[i] : 0));
+    size_y += std::abs(s.force[1][i]), size_z += std::abs(s.force[2][i]);
   }
   CHECK(size_y > 0.1);
   CHECK(size_z > 0.1);

@@ -91,7 +91,7 @@ TEST_CASE("a flat membrane holds with a wall what it holds with another membrane
   CHECK(wall.energy(before_wall) == Approx(other.energy(before_other)).epsilon(1e-13));
   CHECK(std::abs(wall.energy(before_wall)) > 1);
   // And every node of the face feels the same; at the foot of a side the closest point of the other changes its side.
-  for (int i = 1; i < 40; ++i) REQUIRE(before_wall.force_y[i] == Approx(before_other.force_y[i]).epsilon(1e-12));
+  for (int i = 1; i < 40; ++i) REQUIRE(before_wall.force[1][i] == Approx(before_other.force[1][i]).epsilon(1e-12));
 }
 
 TEST_CASE("a circle before a wall is repelled by the integral of the force over its outline") {
@@ -122,14 +122,14 @@ TEST_CASE("the lower wall does what the upper wall does to the mirror image, to 
   Membranes m = biconcave_cells({{40, 9, 0.1}});
   deform(m, random, 1, 0.05);
   const int height = 64;
-  for (double& y : m.y) y = std::round(y * 1048576) / 1048576;  // so that height - 1 - y is exact
+  for (double& y : m.position[1]) y = std::round(y * 1048576) / 1048576;  // so that height - 1 - y is exact
   Membranes mirrored = m;
-  for (double& y : mirrored.y) y = height - 1 - y;
+  for (double& y : mirrored.position[1]) y = height - 1 - y;
   WallContacts walls(m, {{0, morse(0.2, 0.75, 2.5, 18)}}, channel(height));
   run(walls, m), run(walls, mirrored);
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    REQUIRE(mirrored.force_y[i] == -m.force_y[i]);
-    REQUIRE(m.force_x[i] == 0);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    REQUIRE(mirrored.force[1][i] == -m.force[1][i]);
+    REQUIRE(m.force[0][i] == 0);
   }
   CHECK(walls.energy(mirrored) == walls.energy(m));
   CHECK(walls.energy(m) != 0);
@@ -144,12 +144,12 @@ TEST_CASE("walls act on cells of the named type alone, within each potential's o
   run(sum, both), run(a, first), run(b, second);
   int beyond = 0, touched = 0;
   for (int i = 0; i < m.node_count(); ++i) {
-    REQUIRE(both.force_y[i] == Approx(first.force_y[i] + second.force_y[i]).margin(1e-15));
-    const bool other_type = i >= m.cells[1].first, too_far = m.y[i] + 0.5 > 4;
-    if (other_type || too_far) REQUIRE(second.force_y[i] == 0);
-    if (other_type) REQUIRE(both.force_y[i] == 0);
+    REQUIRE(both.force[1][i] == Approx(first.force[1][i] + second.force[1][i]).margin(1e-15));
+    const bool other_type = i >= m.cells[1].first, too_far = m.position[1][i] + 0.5 > 4;
+    if (other_type || too_far) REQUIRE(second.force[1][i] == 0);
+    if (other_type) REQUIRE(both.force[1][i] == 0);
     beyond += !other_type && too_far ? 1 : 0;
-    touched += second.force_y[i] != 0 ? 1 : 0;
+    touched += second.force[1][i] != 0 ? 1 : 0;
   }
   CHECK(beyond > 0);
   CHECK(touched > 0);
@@ -158,17 +158,17 @@ TEST_CASE("walls act on cells of the named type alone, within each potential's o
 
 TEST_CASE("a potential is given the velocity at which a membrane leaves the wall it is near") {
   Membranes m = biconcave_cells({{40, 9, 0}, {100, 54, 0}});
-  std::fill(m.velocity_x.begin(), m.velocity_x.end(), 0.5);
-  std::fill(m.velocity_y.begin(), m.velocity_y.end(), 0.01);
+  std::fill(m.velocity[0].begin(), m.velocity[0].end(), 0.5);
+  std::fill(m.velocity[1].begin(), m.velocity[1].end(), 0.01);
   WallContacts walls(m, {{0, damper(3, 8, "normal_velocity")}}, channel(64));
   run(walls, m);
   double size = 0;
   for (int i = 0; i < m.node_count(); ++i) {
-    const bool near = m.y[i] + 0.5 <= 8 || 63.5 - m.y[i] <= 8;
-    REQUIRE(m.force_y[i] ==
+    const bool near = m.position[1][i] + 0.5 <= 8 || 63.5 - m.position[1][i] <= 8;
+    REQUIRE(m.force[1][i] ==
             Approx(near ? -3 * 0.01 * m.types[0]->rest_weight[i % 100] : 0));  // against the motion at both walls
-    REQUIRE(m.force_x[i] == 0);
-    size += std::abs(m.force_y[i]);
+    REQUIRE(m.force[0][i] == 0);
+    size += std::abs(m.force[1][i]);
   }
   CHECK(size > 0.1);
 }
@@ -188,10 +188,10 @@ TEST_CASE("bonds of a flat membrane with a wall form and pull as those with anot
   WallContacts wall(before_wall, {{0, bond}}, channel(90));
   InteractionForces other(before_other, {{{0, 1}, bond}}, periodic_box(10000));
   for (int step = 0; step < 20; ++step) {
-    for (auto* m : {&before_wall, &before_other}) std::fill(m->force_y.begin(), m->force_y.end(), 0.0);
+    for (auto* m : {&before_wall, &before_other}) std::fill(m->force[1].begin(), m->force[1].end(), 0.0);
     for (int phase = 0; phase < InteractionForces::phases; ++phase) other.run({}, phase, before_other);
     run(wall, before_wall);
-    for (int i = 1; i < 40; ++i) REQUIRE(before_wall.force_y[i] == Approx(before_other.force_y[i]).epsilon(1e-12));
+    for (int i = 1; i < 40; ++i) REQUIRE(before_wall.force[1][i] == Approx(before_other.force[1][i]).epsilon(1e-12));
   }
   CHECK(wall.energy(before_wall) == Approx(other.energy(before_other)).epsilon(1e-12));
   CHECK(wall.energy(before_wall) > 0.1);
@@ -216,8 +216,8 @@ TEST_CASE(
   CHECK(bonds[0].other == 0);
   CHECK(bonds[1].other == 1);
   for (int i = 0; i < m.cells[0].count; ++i) {
-    REQUIRE((bonds[0].value[i] > 0) == (m.y[i] + 0.5 <= 8));
-    REQUIRE((bonds[1].value[i] > 0) == (19.5 - m.y[i] <= 8));
+    REQUIRE((bonds[0].value[i] > 0) == (m.position[1][i] + 0.5 <= 8));
+    REQUIRE((bonds[1].value[i] > 0) == (19.5 - m.position[1][i] <= 8));
   }
   const std::vector<double> upper = bonds[1].value;
   Membranes before = m;
@@ -227,7 +227,7 @@ TEST_CASE(
   CHECK(m.wall_contacts.of_cell[0][1].value != upper);
   CHECK(m.wall_contacts.variables.size() == 1);
 
-  for (int i = 0; i < m.cells[0].count; ++i) m.y[i] += 40;
+  for (int i = 0; i < m.cells[0].count; ++i) m.position[1][i] += 40;
   WallContacts wide(m, {{0, bridging_of_walls()}}, channel(90));
   run(wide, m);
   CHECK(m.wall_contacts.of_cell[0].empty());
@@ -235,15 +235,16 @@ TEST_CASE(
 
 TEST_CASE("nodes on a wall, beyond it and nowhere give a force or none, but no NaN to others") {
   Membranes m = biconcave_cells({{40, 9, 0}});
-  m.y[70] = -0.5, m.y[71] = -0.9, m.y[72] = std::nan(""), m.y[73] = std::numeric_limits<double>::infinity();
+  m.position[1][70] = -0.5, m.position[1][71] = -0.9, m.position[1][72] = std::nan(""),
+  m.position[1][73] = std::numeric_limits<double>::infinity();
   WallContacts walls(m, {{0, morse(0.2, 0.75, 2.5, 18)}}, channel(90));
   run(walls, m);
-  for (const double force : m.force_y) REQUIRE(std::isfinite(force));
-  CHECK(m.force_y[70] > 0);
-  CHECK(m.force_y[71] > 0);
-  m.y[0] = std::nan("");  // where the search for the lowest node begins
+  for (const double force : m.force[1]) REQUIRE(std::isfinite(force));
+  CHECK(m.force[1][70] > 0);
+  CHECK(m.force[1][71] > 0);
+  m.position[1][0] = std::nan("");  // where the search for the lowest node begins
   run(walls, m);
-  CHECK(std::isfinite(m.force_y[70]));
+  CHECK(std::isfinite(m.force[1][70]));
 }
 
 TEST_CASE("forces of walls are the same to the last bit for one, two and five workers") {
@@ -257,8 +258,8 @@ TEST_CASE("forces of walls are the same to the last bit for one, two and five wo
     run(walls, m, workers);
     results.push_back(m);
   }
-  CHECK(results[1].force_y == results[0].force_y);
-  CHECK(results[2].force_y == results[0].force_y);
+  CHECK(results[1].force[1] == results[0].force[1]);
+  CHECK(results[2].force[1] == results[0].force[1]);
   CHECK(force_sums(results[0]).size > 0.1);
 }
 

@@ -44,12 +44,12 @@ Membranes cell_with_forces(std::mt19937& random, double noise) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   Membranes m = biconcave_cells({{40, 30, 0.4}}, 120);
   deform(m, random, 1, 0.02);
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    const double angle = 6.283185307179586 * static_cast<double>(i) / static_cast<double>(m.x.size());
-    m.force_x[i] = std::cos(2 * angle) + noise * uniform(random);
-    m.force_y[i] = std::sin(3 * angle) + noise * uniform(random);
-    m.velocity_x[i] = std::cos(angle) + noise * uniform(random);
-    m.velocity_y[i] = std::sin(2 * angle) + noise * uniform(random);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    const double angle = 6.283185307179586 * static_cast<double>(i) / static_cast<double>(m.position[0].size());
+    m.force[0][i] = std::cos(2 * angle) + noise * uniform(random);
+    m.force[1][i] = std::sin(3 * angle) + noise * uniform(random);
+    m.velocity[0][i] = std::cos(angle) + noise * uniform(random);
+    m.velocity[1][i] = std::sin(2 * angle) + noise * uniform(random);
   }
   return m;
 }
@@ -113,7 +113,7 @@ TEST_CASE("the slip correction adds no force to the fluid") {
   SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5, 2), 0, 0}}, 1.0 / 6);
   take_forces(correction, m);
   double x = 0, y = 0;
-  for (std::size_t i = 0; i < m.x.size(); ++i) x += correction.forces().x[i], y += correction.forces().y[i];
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) x += correction.forces().x[i], y += correction.forces().y[i];
   const ForceSums sums = force_sums(m);
   CHECK(std::abs(x - sums.x) < 1e-14 * sums.size);
   CHECK(std::abs(y - sums.y) < 1e-14 * sums.size);
@@ -124,19 +124,20 @@ TEST_CASE("the slip correction keeps the torque to second order in shift over ra
   double missing[2];
   for (const int size : {1, 2}) {
     Membranes m = biconcave_cells({{0, 0, 0}}, 400);
-    for (double& x : m.x) x *= size;
-    for (double& y : m.y) y *= size;
-    for (std::size_t i = 0; i < m.x.size(); ++i) {
+    for (double& x : m.position[0]) x *= size;
+    for (double& y : m.position[1]) y *= size;
+    for (std::size_t i = 0; i < m.position[0].size(); ++i) {
       const double angle = 6.283185307179586 * static_cast<double>(i) / 400;
-      m.force_x[i] = -std::sin(angle) + std::cos(2 * angle), m.force_y[i] = std::cos(angle) + 0.3 * std::sin(3 * angle);
+      m.force[0][i] = -std::sin(angle) + std::cos(2 * angle),
+      m.force[1][i] = std::cos(angle) + 0.3 * std::sin(3 * angle);
     }
     SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5, 2), 0, 0}}, 1.0 / 6);
     take_forces(correction, m);
     const NodeVectors at = correction.positions(), force = correction.forces();
     double torque = 0, expected = 0;
-    for (std::size_t i = 0; i < m.x.size(); ++i) {
+    for (std::size_t i = 0; i < m.position[0].size(); ++i) {
       torque += at.x[i] * force.y[i] - at.y[i] * force.x[i];
-      expected += m.x[i] * m.force_y[i] - m.y[i] * m.force_x[i];
+      expected += m.position[0][i] * m.force[1][i] - m.position[1][i] * m.force[0][i];
     }
     missing[size - 1] = std::abs(torque / expected - 1);
   }
@@ -153,13 +154,13 @@ TEST_CASE("what the fluid does on the membrane is what the membrane does on the 
   SlipCorrection correction(m, {{constants, 0, 0}}, 1.0 / 6);
   take_forces(correction, m);
   double fluid = 0, membrane = 0, size = 0;
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    fluid += correction.forces().x[i] * m.velocity_x[i] + correction.forces().y[i] * m.velocity_y[i];
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    fluid += correction.forces().x[i] * m.velocity[0][i] + correction.forces().y[i] * m.velocity[1][i];
   }
   correction.correct({}, m);
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    membrane += m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
-    size += std::hypot(m.force_x[i], m.force_y[i]) * std::hypot(m.velocity_x[i], m.velocity_y[i]);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    membrane += m.force[0][i] * m.velocity[0][i] + m.force[1][i] * m.velocity[1][i];
+    size += std::hypot(m.force[0][i], m.force[1][i]) * std::hypot(m.velocity[0][i], m.velocity[1][i]);
   }
   CHECK(std::abs(fluid - membrane) < 1e-14 * size);
 }
@@ -168,17 +169,17 @@ TEST_CASE("the slip follows the tangential force along the membrane and costs en
   // A circle pulled round: slip x force per length / viscosity, everywhere alike, whatever the smoothing.
   Membranes m = biconcave_cells({{0, 0, 0}}, 120);
   const double radius = 19, force = 0.01, viscosity = 0.2;
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
     const double angle = 6.283185307179586 * static_cast<double>(i) / 120;
-    m.x[i] = radius * std::cos(angle), m.y[i] = radius * std::sin(angle);
-    m.force_x[i] = -force * std::sin(angle), m.force_y[i] = force * std::cos(angle);
+    m.position[0][i] = radius * std::cos(angle), m.position[1][i] = radius * std::sin(angle);
+    m.force[0][i] = -force * std::sin(angle), m.force[1][i] = force * std::cos(angle);
   }
   SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 1, 2), GENERATE(0.0, 5.0), 0}}, viscosity);
   take_forces(correction, m);
   correction.correct({}, m);
   const double chord = 2 * radius * std::sin(6.283185307179586 / 120), slip = 0.4137 * force / (chord / 2) / viscosity;
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    const double along = (m.velocity_x[i] * m.force_x[i] + m.velocity_y[i] * m.force_y[i]) / force;
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    const double along = (m.velocity[0][i] * m.force[0][i] + m.velocity[1][i] * m.force[1][i]) / force;
     REQUIRE(along == Approx(slip).epsilon(1e-3));
   }
 }
@@ -193,9 +194,11 @@ TEST_CASE("forces without their pressure do no work on the area and have the sam
   CHECK(std::abs(after.y - before.y) < 1e-14 * before.size);
   CHECK(std::abs(after.torque - before.torque) < 1e-12 * before.size);
   double work = 0;
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    const std::size_t next = (i + 1) % m.x.size(), last = (i + m.x.size() - 1) % m.x.size();
-    work += m.force_x[i] * (m.y[next] - m.y[last]) / 2 + m.force_y[i] * (m.x[last] - m.x[next]) / 2;
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    const std::size_t next = (i + 1) % m.position[0].size(),
+                      last = (i + m.position[0].size() - 1) % m.position[0].size();
+    work += m.force[0][i] * (m.position[1][next] - m.position[1][last]) / 2 +
+            m.force[1][i] * (m.position[0][last] - m.position[0][next]) / 2;
   }
   CHECK(std::abs(work) < 1e-13 * before.size);
 }
@@ -208,13 +211,13 @@ TEST_CASE("what the fluid gets from forces without pressure is what membranes lo
   Membranes spread = m;
   take_out_pressures({}, spread);
   double fluid = 0, membrane = 0, size = 0;
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    fluid += spread.force_x[i] * m.velocity_x[i] + spread.force_y[i] * m.velocity_y[i];
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    fluid += spread.force[0][i] * m.velocity[0][i] + spread.force[1][i] * m.velocity[1][i];
   }
   keep_areas({}, m);
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    membrane += m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
-    size += std::hypot(m.force_x[i], m.force_y[i]) * std::hypot(m.velocity_x[i], m.velocity_y[i]);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    membrane += m.force[0][i] * m.velocity[0][i] + m.force[1][i] * m.velocity[1][i];
+    size += std::hypot(m.force[0][i], m.force[1][i]) * std::hypot(m.velocity[0][i], m.velocity[1][i]);
   }
   CHECK(std::abs(fluid - membrane) < 1e-14 * size);
 }
@@ -223,16 +226,18 @@ TEST_CASE("the area correction makes no cell larger or smaller, and tells what w
   auto random = generator(84);
   Membranes m = cell_with_forces(random, 0.1);
   m.cells[0].rest_area = enclosed_area(m, m.cells[0]);
-  for (auto* velocity : {&m.velocity_x, &m.velocity_y}) {
+  for (auto* velocity : {&m.velocity[0], &m.velocity[1]}) {
     for (double& v : *velocity) v *= 1e-4;
   }
   m.area_leakage.assign(1, 0.0);
   Membranes moved = m;
-  for (std::size_t i = 0; i < m.x.size(); ++i) moved.x[i] += m.velocity_x[i], moved.y[i] += m.velocity_y[i];
+  for (std::size_t i = 0; i < m.position[0].size(); ++i)
+    moved.position[0][i] += m.velocity[0][i], moved.position[1][i] += m.velocity[1][i];
   const double leak = 1 - enclosed_area(moved, m.cells[0]) / m.cells[0].rest_area;
   keep_areas({}, m);
   CHECK(m.area_leakage[0] == Approx(leak).epsilon(1e-3));
-  for (std::size_t i = 0; i < m.x.size(); ++i) m.x[i] += m.velocity_x[i], m.y[i] += m.velocity_y[i];
+  for (std::size_t i = 0; i < m.position[0].size(); ++i)
+    m.position[0][i] += m.velocity[0][i], m.position[1][i] += m.velocity[1][i];
   // What is left is of second order in the displacement of 1e-4.
   CHECK(std::abs(enclosed_area(m, m.cells[0]) / m.cells[0].rest_area - 1) < 1e-9);
   CHECK(std::abs(leak) > 1e-6);
@@ -248,7 +253,7 @@ TEST_CASE("in a steady flow the leak that is told is that of a strain of one, an
   keep_areas({}, m, strain);
   const double leak = m.area_leakage[0];
   for (int step = 1; step < 1000; ++step) {
-    m.velocity_x = before.velocity_x, m.velocity_y = before.velocity_y;
+    m.velocity[0] = before.velocity[0], m.velocity[1] = before.velocity[1];
     keep_areas({}, m, strain);
   }
   CHECK(std::abs(leak) > 1e-6);
@@ -260,10 +265,11 @@ TEST_CASE("the area correction brings a wrong area back") {
   m.cells[0].rest_area *= 1.01;
   m.area_leakage.assign(1, 0.0);
   for (int step = 0; step < 500; ++step) {
-    std::fill(m.velocity_x.begin(), m.velocity_x.end(), 0.0);
-    std::fill(m.velocity_y.begin(), m.velocity_y.end(), 0.0);
+    std::fill(m.velocity[0].begin(), m.velocity[0].end(), 0.0);
+    std::fill(m.velocity[1].begin(), m.velocity[1].end(), 0.0);
     keep_areas({}, m);
-    for (std::size_t i = 0; i < m.x.size(); ++i) m.x[i] += m.velocity_x[i], m.y[i] += m.velocity_y[i];
+    for (std::size_t i = 0; i < m.position[0].size(); ++i)
+      m.position[0][i] += m.velocity[0][i], m.position[1][i] += m.velocity[1][i];
   }
   // A fiftieth of the difference goes in each step.
   CHECK(enclosed_area(m, m.cells[0]) / m.cells[0].rest_area - 1 ==

@@ -31,7 +31,8 @@ Membranes cells_with_forces(std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   Membranes m = biconcave_cells({{30, 20, 0.3}, {33, 40, 1.2}});
   deform(m, random, 2, 0.3);
-  for (std::size_t i = 0; i < m.x.size(); ++i) m.force_x[i] = uniform(random), m.force_y[i] = uniform(random);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i)
+    m.force[0][i] = uniform(random), m.force[1][i] = uniform(random);
   return m;
 }
 
@@ -82,14 +83,15 @@ double adjointness_error(const Coupling<T>& coupling, Membranes& m, const core::
   const WallForces<2> share = coupling.wall_share(m, m.forces(), {});
   error += share.lower[0] * walls.lower + share.upper[0] * walls.upper;
   double lost[2] = {-share.all(0), -share.all(1)};
-  for (std::size_t i = 0; i < m.x.size(); ++i) lost[0] += m.force_x[i], lost[1] += m.force_y[i];
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) lost[0] += m.force[0][i], lost[1] += m.force[1][i];
   for (int k = 0; k < 2; ++k) {
     for (int y = 0; y < ny; ++y) {
       for (int x = 0; x < nx; ++x) lost[k] -= static_cast<double>(force[k].row(y)[x]);
     }
     CHECK(std::abs(lost[k]) < 100 * std::numeric_limits<T>::epsilon());
   }
-  for (std::size_t i = 0; i < m.x.size(); ++i) error -= m.force_x[i] * m.velocity_x[i] + m.force_y[i] * m.velocity_y[i];
+  for (std::size_t i = 0; i < m.position[0].size(); ++i)
+    error -= m.force[0][i] * m.velocity[0][i] + m.force[1][i] * m.velocity[1][i];
   return error;
 }
 
@@ -99,10 +101,10 @@ TEMPLATE_TEST_CASE("spreading and interpolation are adjoint, over periodic borde
                    double) {
   auto random = generator(73);
   Membranes m = cells_with_forces(random);
-  for (double& x : m.x) x -= 300;  // far outside the periodic box, and across its border
+  for (double& x : m.position[0]) x -= 300;  // far outside the periodic box, and across its border
   const core::Domain<2> domain({70, 64}, {true, GENERATE(false, true)});
   std::uniform_real_distribution<double> anywhere(-1, 63.4);
-  for (std::size_t i = 0; i < m.y.size(); i += 3) m.y[i] = anywhere(random);
+  for (std::size_t i = 0; i < m.position[1].size(); i += 3) m.position[1][i] = anywhere(random);
   const KernelKind kernel =
       GENERATE(KernelKind::peskin4, KernelKind::cosine4, KernelKind::roma3, KernelKind::linear2, KernelKind::sharp6);
   Coupling<TestType> coupling(kernel, domain);
@@ -124,9 +126,9 @@ TEST_CASE("linear velocity is interpolated exactly by every kernel without a fir
     for (int x = -2; x < 82; ++x) velocity[0].row(y)[x] = 0.1 + 0.02 * y - 0.01 * x, velocity[1].row(y)[x] = 0.03 * x;
   }
   coupling.interpolate({}, m, velocity);
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    REQUIRE(m.velocity_x[i] == Approx(0.1 + 0.02 * m.y[i] - 0.01 * m.x[i]).margin(1e-13));
-    REQUIRE(m.velocity_y[i] == Approx(0.03 * m.x[i]).margin(1e-13));
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    REQUIRE(m.velocity[0][i] == Approx(0.1 + 0.02 * m.position[1][i] - 0.01 * m.position[0][i]).margin(1e-13));
+    REQUIRE(m.velocity[1][i] == Approx(0.03 * m.position[0][i]).margin(1e-13));
   }
 }
 
@@ -150,7 +152,7 @@ TEST_CASE("a node beyond a wall, or nowhere, is reported and touches nothing") {
   auto random = generator(76);
   Membranes m = cells_with_forces(random);
   const double bad = GENERATE(-1.01, 64.0, 1e30, -1e300, std::numeric_limits<double>::infinity(), std::nan(""));
-  m.y[77] = bad;
+  m.position[1][77] = bad;
   Coupling<double> coupling(KernelKind::peskin4, channel);
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());
@@ -159,23 +161,23 @@ TEST_CASE("a node beyond a wall, or nowhere, is reported and touches nothing") {
   coupling.spread({0, force[0].size(1)}, m, m.forces(), force);
   double sum = 0, expected = 0;
   for_all(force[0], [&](int, int, double f) { sum += f; });
-  for (std::size_t i = 0; i < m.x.size(); ++i) expected += i == 77 ? 0 : m.force_x[i];
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) expected += i == 77 ? 0 : m.force[0][i];
   CHECK(sum == Approx(expected).margin(1e-12));
   coupling.interpolate({}, m, force);
-  CHECK(m.velocity_y[77] == 0);
+  CHECK(m.velocity[1][77] == 0);
 }
 
 TEST_CASE("nodes may lie on the outermost rows, half a spacing beyond the walls, and wherever rounding wraps them") {
   Membranes m = biconcave_cells({{30, 30, 0}}, 8);
   Coupling<double> coupling(KernelKind::peskin4, channel);
   coupling.reserve(m);
-  m.y[0] = -1.0;
-  m.y[1] = 63.999999;
-  m.x[2] = -1e-17;  // the fraction rounds to 1: the column wraps to the last
-  m.x[3] = 80 - 1e-14;
+  m.position[1][0] = -1.0;
+  m.position[1][1] = 63.999999;
+  m.position[0][2] = -1e-17;  // the fraction rounds to 1: the column wraps to the last
+  m.position[0][3] = 80 - 1e-14;
   coupling.locate({}, m, m.positions());
   CHECK(coupling.escaped(m) == -1);
-  std::fill(m.force_x.begin(), m.force_x.end(), 1.0);
+  std::fill(m.force[0].begin(), m.force[0].end(), 1.0);
   auto random = generator(78);
   CHECK(std::abs(adjointness_error(coupling, m, channel, random)) < 1e-14);
 }

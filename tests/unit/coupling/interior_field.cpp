@@ -72,8 +72,8 @@ TEST_CASE("the fraction inside is 1 or 0 away from a surface, and its sum is the
     smooth(fraction, scratch);
     CHECK(sum(fraction) == Approx(sum(sharp)).epsilon(1e-12));
     Surfaces twice = s;
-    for (auto* places : {&twice.x, &twice.y, &twice.z}) {
-      for (double& place_along : *places) place_along *= 2;
+    for (auto& places : twice.position) {
+      for (double& place_along : places) place_along *= 2;
     }
     cover(twice.type_of(0).mesh, twice.nodes(0), fraction);
     CHECK(sum(fraction) == Approx(8 * volume).epsilon(1e-3));
@@ -125,9 +125,9 @@ TEST_CASE("inside a surface the relaxation rate is that of its viscosity, across
   // Every node of the stencil of every node of the surface is marked.
   for (int i = 0; i < s.node_count(); ++i) {
     for (int k = 0; k < 64; ++k) {
-      const int x = domain.wrapped(0, static_cast<int>(std::floor(s.x[i])) - 1 + k % 4),
-                y = static_cast<int>(std::floor(s.y[i])) - 1 + k / 4 % 4,
-                z = domain.wrapped(2, static_cast<int>(std::floor(s.z[i])) - 1 + k / 16);
+      const int x = domain.wrapped(0, static_cast<int>(std::floor(s.position[0][i])) - 1 + k % 4),
+                y = static_cast<int>(std::floor(s.position[1][i])) - 1 + k / 4 % 4,
+                z = domain.wrapped(2, static_cast<int>(std::floor(s.position[2][i])) - 1 + k / 16);
       REQUIRE(rates.mask.active(x, y + box[1] * z));
     }
   }
@@ -162,7 +162,7 @@ TEST_CASE("in layers the inside of a surface keeps its viscosity, and what it le
   CHECK(is(12, 2, 10, 3));
   CHECK(is(12, 19, 10, 1));
   CHECK(is(2, 10, 0, rows[10]));  // the row that the border cuts
-  for (double& z : s.z) z += 10;
+  for (double& z : s.position[2]) z += 10;
   update();
   CHECK(is(12, 9, 0, ratio));
   CHECK(is(12, 12, 0, ratio));
@@ -183,7 +183,7 @@ TEST_CASE("where a surface has been the fluid is the plain one again") {
   };
   update();
   REQUIRE(rates.rate.row(11, 10)[12] < 0.8);
-  for (double& z : s.z) z += 10;
+  for (double& z : s.position[2]) z += 10;
   update();
   CHECK(rates.rate.row(11, 10)[12] == 0.8);
   CHECK_FALSE(rates.mask.active(12, 11 + box[1] * 10));

@@ -157,17 +157,17 @@ TEST_CASE("beside a moving wall linear flow is interpolated exactly, by every ke
   Membranes m = biconcave_cells({{12, 8, 0}}, 64);
   auto random = generator(77);
   std::uniform_real_distribution<double> along(0, nx), gap(0, 2);
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    m.x[i] = along(random);
-    m.y[i] = i % 2 == 0 ? -0.5 + gap(random) : ny - 0.5 - gap(random);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    m.position[0][i] = along(random);
+    m.position[1][i] = i % 2 == 0 ? -0.5 + gap(random) : ny - 0.5 - gap(random);
   }
   Coupling<double> coupling(kernel, {{nx, ny}, {true, false}});
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());
   REQUIRE(coupling.escaped(m) == -1);
   coupling.interpolate({}, m, velocity);
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    REQUIRE(m.velocity_x[i] == Approx(lower + rate * (m.y[i] + 0.5)).margin(1e-14));
-    REQUIRE(m.velocity_y[i] == Approx(0).margin(1e-15));
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    REQUIRE(m.velocity[0][i] == Approx(lower + rate * (m.position[1][i] + 0.5)).margin(1e-14));
+    REQUIRE(m.velocity[1][i] == Approx(0).margin(1e-15));
   }
 }

@@ -29,7 +29,7 @@ Surfaces sphere_at(const Vec<3>& center, std::mt19937& random) {
   add_cell(s, 0, center);
   std::uniform_real_distribution<double> any(-1, 1);
   for (int i = 0; i < s.node_count(); ++i)
-    s.force_x[i] = any(random), s.force_y[i] = any(random), s.force_z[i] = any(random);
+    s.force[0][i] = any(random), s.force[1][i] = any(random), s.force[2][i] = any(random);
   return s;
 }
 
@@ -101,7 +101,7 @@ TEMPLATE_TEST_CASE("in three dimensions spreading and interpolation are adjoint,
       fill_halo(u, domain);
       coupling.interpolate({}, s, u);
       for (int i = 0; i < s.node_count(); ++i) {
-        power -= s.force_x[i] * s.velocity_x[i] + s.force_y[i] * s.velocity_y[i] + s.force_z[i] * s.velocity_z[i];
+        power -= s.force[0][i] * s.velocity[0][i] + s.force[1][i] * s.velocity[1][i] + s.force[2][i] * s.velocity[2][i];
       }
       CHECK(std::abs(power) < (sizeof(TestType) == 4 ? 1e-5 : 1e-13) * size);
     }
@@ -119,8 +119,10 @@ TEMPLATE_TEST_CASE(
        {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::cosine4, KernelKind::sharp6}) {
     Surfaces s = sphere_at({5, 8, 8}, random);
     for (int i = 0; i < s.node_count(); ++i) {  // most of them in the corners
-      s.y[i] = any(random) < 0 ? any(random) / 2 + 0.2 : 16.9 + any(random) / 2;
-      s.z[i] = i % 5 == 0 ? 8 + any(random) : any(random) < 0 ? any(random) / 2 + 0.2 : 14.8 + any(random) / 2;
+      s.position[1][i] = any(random) < 0 ? any(random) / 2 + 0.2 : 16.9 + any(random) / 2;
+      s.position[2][i] = i % 5 == 0        ? 8 + any(random)
+                         : any(random) < 0 ? any(random) / 2 + 0.2
+                                           : 14.8 + any(random) / 2;
     }
     SurfaceCoupling<TestType> coupling(kernel, domain);
     coupling.reserve(s);
@@ -139,15 +141,15 @@ TEMPLATE_TEST_CASE(
     const SolidNodes<3> solid(box, [](const std::array<int, 3>& node) { return node[1] < 2; });
     const WallForces<3> share = coupling.wall_share(s, s.forces(), nullptr, {}),
                         with_solid = coupling.wall_share(s, s.forces(), &solid, {});
-    const std::vector<double>* const given[] = {&s.force_x, &s.force_y, &s.force_z};
-    const std::vector<double>* const moved[] = {&s.velocity_x, &s.velocity_y, &s.velocity_z};
+    const auto& given = s.force;
+    const auto& moved = s.velocity;
     const double rounding = sizeof(TestType) == 4 ? 2e-4 : 1e-12;
     double power = share.lower[0] * walls.lower + share.upper[0] * walls.upper;
     for (int k = 0; k < 3; ++k) {
       double lost = -share.all(k), lost_with_solid = -with_solid.all(k);
       for (int i = 0; i < s.node_count(); ++i) {
-        power -= (*given[k])[i] * (*moved[k])[i];
-        lost += (*given[k])[i], lost_with_solid += (*given[k])[i];
+        power -= given[k][i] * moved[k][i];
+        lost += given[k][i], lost_with_solid += given[k][i];
       }
       for_nodes([&](int x, int y, int z) {
         const auto here = static_cast<double>(force[k].row(y, z)[x]);
@@ -180,7 +182,7 @@ TEST_CASE("in three dimensions force and torque on the lattice are those of the 
       torque += Vec<3>(x, y, z).cross(f);
     });
     for (int i = 0; i < s.node_count(); ++i) {
-      const Vec<3> f(s.force_x[i], s.force_y[i], s.force_z[i]);
+      const Vec<3> f(s.force[0][i], s.force[1][i], s.force[2][i]);
       sum -= f;
       torque -= s.nodes(0)[i].cross(f);
     }
@@ -204,9 +206,9 @@ TEST_CASE("in three dimensions linear velocity is interpolated exactly") {
   });
   coupling.interpolate({}, s, u);
   for (int i = 0; i < s.node_count(); ++i) {
-    CHECK(std::abs(s.velocity_x[i] - (0.3 + 0.1 * s.y[i] - 0.2 * s.z[i])) < 1e-14);
-    CHECK(std::abs(s.velocity_y[i] - (0.05 * s.x[i] + 0.02 * s.y[i])) < 1e-14);
-    CHECK(std::abs(s.velocity_z[i] - (-0.07 * s.z[i] + 0.01 * s.x[i])) < 1e-14);
+    CHECK(std::abs(s.velocity[0][i] - (0.3 + 0.1 * s.position[1][i] - 0.2 * s.position[2][i])) < 1e-14);
+    CHECK(std::abs(s.velocity[1][i] - (0.05 * s.position[0][i] + 0.02 * s.position[1][i])) < 1e-14);
+    CHECK(std::abs(s.velocity[2][i] - (-0.07 * s.position[2][i] + 0.01 * s.position[0][i])) < 1e-14);
   }
 }
 
@@ -215,8 +217,8 @@ TEMPLATE_TEST_CASE("spread forces of surfaces are the same bits however rows are
   auto random = generator(84);
   const Domain<3> domain(box, {true, true, true});
   Surfaces s = sphere_at({9.75, 8.25, 7.5}, random);
-  for (auto* places : {&s.x, &s.y, &s.z}) {  // with few digits, so that they are the same ones elsewhere
-    for (double& place : *places) place = std::round(place * 1024) / 1024;
+  for (auto& places : s.position) {  // with few digits, so that they are the same ones elsewhere
+    for (double& place : places) place = std::round(place * 1024) / 1024;
   }
   const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::sharp6);
   const auto spread = [&](const std::vector<int>& cuts) {
@@ -228,8 +230,8 @@ TEMPLATE_TEST_CASE("spread forces of surfaces are the same bits however rows are
     return force;
   };
   const auto whole = spread({0, 288}), parts = spread({0, 1, 100, 101, 150, 288});
-  for (double& x : s.x) x += 8;  // across the border
-  for (double& z : s.z) z -= 5;
+  for (double& x : s.position[0]) x += 8;  // across the border
+  for (double& z : s.position[2]) z -= 5;
   const auto moved = spread({0, 50, 288});
   for_nodes([&](int x, int y, int z) {
     for (int k = 0; k < 3; ++k) {
@@ -265,9 +267,9 @@ TEST_CASE("a node of a surface beyond a wall, or nowhere, is reported and touche
   coupling.reserve(s);
   for (const double bad : {std::nan(""), 18.01, -1.01, 1e300}) {
     Surfaces lost = s;
-    lost.y[17] = bad;
+    lost.position[1][17] = bad;
     for (int i = 0; i < lost.node_count(); ++i) {
-      if (i != 17) lost.force_x[i] = lost.force_y[i] = lost.force_z[i] = 0;
+      if (i != 17) lost.force[0][i] = lost.force[1][i] = lost.force[2][i] = 0;
     }
     coupling.locate({}, lost, lost.positions());
     CHECK(coupling.escaped(lost) == 17);
@@ -275,6 +277,6 @@ TEST_CASE("a node of a surface beyond a wall, or nowhere, is reported and touche
     coupling.spread({0, box[1] * box[2]}, lost, lost.forces(), force);
     for_nodes([&](int x, int y, int z) { REQUIRE(force[0].row(y, z)[x] == 0); });
     coupling.interpolate({}, lost, force);
-    CHECK(lost.velocity_y[17] == 0);
+    CHECK(lost.velocity[1][17] == 0);
   }
 }

@@ -22,10 +22,10 @@ Surfaces uneven_sphere(std::mt19937& random) {
   Surfaces s;
   s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(4, {5, 5, 5}))));
   add_cell(s, 0, {9, 8, 7});
-  for (auto* values : {&s.x, &s.y, &s.z}) {
-    for (double& value : *values) value += 0.1 * any(random);
+  for (auto& values : s.position) {
+    for (double& value : values) value += 0.1 * any(random);
   }
-  for (auto* values : {&s.force_x, &s.force_y, &s.force_z, &s.velocity_x, &s.velocity_y, &s.velocity_z}) {
+  for (auto* values : {&s.force[0], &s.force[1], &s.force[2], &s.velocity[0], &s.velocity[1], &s.velocity[2]}) {
     for (double& value : *values) value = any(random);
   }
   return s;
@@ -73,12 +73,12 @@ TEST_CASE("what the shift does to velocities is the adjoint of what it does to f
     SurfaceSlip slip = slip_of(s, {constants.shift, mobility}, stiffness);
     double given = 0, taken = 0, size = 0;
     for (int i = 0; i < s.node_count(); ++i) {
-      given += vector(slip.forces(), i).dot(Vec<3>(s.velocity_x[i], s.velocity_y[i], s.velocity_z[i]));
+      given += vector(slip.forces(), i).dot(Vec<3>(s.velocity[0][i], s.velocity[1][i], s.velocity[2][i]));
       size += vector(slip.forces(), i).norm();
     }
     slip.correct({}, s, normals_of(s));
     for (int i = 0; i < s.node_count(); ++i)
-      taken += vector(s.forces(), i).dot(Vec<3>(s.velocity_x[i], s.velocity_y[i], s.velocity_z[i]));
+      taken += vector(s.forces(), i).dot(Vec<3>(s.velocity[0][i], s.velocity[1][i], s.velocity[2][i]));
     if (mobility == 0) {
       CHECK(taken == Approx(given).margin(1e-13 * size));
     } else {
@@ -93,16 +93,16 @@ TEST_CASE("a surface that moves as a rigid body does so with the slip correction
   SurfaceSlip slip(s, {{slip_constants(KernelKind::peskin4, 5, 3), 0}}, 1.0 / 6);
   const SurfaceNormals normals = normals_of(s);
   slip.measure({}, s, normals);
-  for (auto* values : {&s.force_x, &s.force_y, &s.force_z}) std::fill(values->begin(), values->end(), 0.0);
+  for (auto& values : s.force) std::fill(values.begin(), values.end(), 0.0);
   slip.complete({}, s, normals);
   const Vec<3> turn(0.3, -0.2, 0.5), along(0.1, 0.2, -0.4);
   for (int i = 0; i < s.node_count(); ++i) {
     const Vec<3> u = along + turn.cross(vector(slip.positions(), i));
-    s.velocity_x[i] = u.x(), s.velocity_y[i] = u.y(), s.velocity_z[i] = u.z();
+    s.velocity[0][i] = u.x(), s.velocity[1][i] = u.y(), s.velocity[2][i] = u.z();
   }
   slip.correct({}, s, normals_of(s));
   for (int i = 0; i < s.node_count(); ++i) {
-    const Vec<3> u(s.velocity_x[i], s.velocity_y[i], s.velocity_z[i]);
+    const Vec<3> u(s.velocity[0][i], s.velocity[1][i], s.velocity[2][i]);
     CHECK((u - along - turn.cross(s.nodes(0)[i])).norm() < 1e-12);
   }
 }
@@ -113,7 +113,7 @@ TEST_CASE("slip is smoothed by Fejer's kernel of the mass matrix, which bounds w
   const double stiffness = GENERATE(0.0, 1.0, 30.0), viscosity = 1.0 / 6;
   const SlipConstants constants{0, 0.7};  // where nodes are
   SurfaceSlip slip = slip_of(s, constants, stiffness);
-  for (auto* values : {&s.velocity_x, &s.velocity_y, &s.velocity_z}) std::fill(values->begin(), values->end(), 0.0);
+  for (auto& values : s.velocity) std::fill(values.begin(), values.end(), 0.0);
   slip.correct({}, s, normals_of(s));
 
   // The matrix of the integrals of hat functions' products, over the areas around the nodes.
@@ -162,7 +162,7 @@ TEST_CASE("slip is smoothed by Fejer's kernel of the mass matrix, which bounds w
                   (share.asDiagonal() * (modes.eigenvectors().transpose() * (root.asDiagonal() * per_area)))));
   double worst = 0;
   for (int i = 0; i < n; ++i)
-    worst = std::max(worst,
-                     (Vec<3>(s.velocity_x[i], s.velocity_y[i], s.velocity_z[i]) - smoothed.row(i).transpose()).norm());
+    worst = std::max(
+        worst, (Vec<3>(s.velocity[0][i], s.velocity[1][i], s.velocity[2][i]) - smoothed.row(i).transpose()).norm());
   CHECK(worst < 1e-11 * per_area.cwiseAbs().maxCoeff());
 }

@@ -17,9 +17,10 @@ namespace {
 
 Membranes polygon(const std::vector<std::pair<double, double>>& nodes) {
   Membranes m;
-  for (const auto& [x, y] : nodes) m.x.push_back(x), m.y.push_back(y);
+  for (const auto& [x, y] : nodes) m.position[0].push_back(x), m.position[1].push_back(y);
   m.cells.push_back({{0, m.node_count()}, 0, 0, 0});
-  for (auto* values : {&m.force_x, &m.force_y, &m.velocity_x, &m.velocity_y}) values->assign(m.x.size(), 0.0);
+  for (auto* values : {&m.force[0], &m.force[1], &m.velocity[0], &m.velocity[1]})
+    values->assign(m.position[0].size(), 0.0);
   return m;
 }
 
@@ -175,7 +176,8 @@ TEST_CASE("the relaxation rate follows the arithmetic mean of the viscosities, o
         if (rate.row(y)[x] != 1 / tau) REQUIRE(mask.active(x, y));
       }
     }
-    for (std::size_t i = 0; i < m.x.size(); ++i) m.x[i] += 13.7, m.y[i] += periodic_y ? 20.3 : -0.3;
+    for (std::size_t i = 0; i < m.position[0].size(); ++i)
+      m.position[0][i] += 13.7, m.position[1][i] += periodic_y ? 20.3 : -0.3;
   }
 }
 
@@ -204,10 +206,10 @@ TEST_CASE("in layers the inside of a cell keeps its viscosity, and what it leave
   CHECK(is(55, 10, 3));
   CHECK(is(70, 20, 1 / (0.25 / 3 + 0.75)));
   const CellRange& second = m.cells[1];
-  for (int i = second.first; i < second.end(); ++i) m.y[i] -= 30;
+  for (int i = second.first; i < second.end(); ++i) m.position[1][i] -= 30;
   update(viscosity_field, m, rate, mask);
   CHECK(is(58, 16, 1));
-  for (double& y : m.y) y += 40;
+  for (double& y : m.position[1]) y += 40;
   update(viscosity_field, m, rate, mask);
   long different = 0;
   for (int y = 0; y < 30; ++y) {
@@ -231,9 +233,9 @@ TEST_CASE("every node that a membrane can reach before the next update is marked
   CHECK(mask.active_fraction() < 0.6);
   CHECK(mask.active_fraction() > 0.1);
   for (int trial = 0; trial < 20; ++trial) {
-    for (std::size_t i = 0; i < m.x.size(); ++i) {
-      const int x = static_cast<int>(std::floor(m.x[i] + 0.99 * uniform(random)));
-      const int y = static_cast<int>(std::floor(m.y[i] + 0.99 * uniform(random)));
+    for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+      const int x = static_cast<int>(std::floor(m.position[0][i] + 0.99 * uniform(random)));
+      const int y = static_cast<int>(std::floor(m.position[1][i] + 0.99 * uniform(random)));
       for (int dy = -1; dy <= 2; ++dy) {
         for (int dx = -1; dx <= 2; ++dx) {
           if (y + dy < 0 || y + dy >= ny) continue;
@@ -250,10 +252,10 @@ TEST_CASE("an update is due once a node has moved by a tenth of a spacing, and f
   auto rate = plain_rate<double>(80, 64, 1.0);
   NodeMask mask(core::Domain<2>({80, 64}, {true, false}));
   update(viscosity_field, m, rate, mask);
-  m.x[150] += 0.099;
+  m.position[0][150] += 0.099;
   viscosity_field.measure({}, m);
   CHECK_FALSE(viscosity_field.due());
-  m.y[150] += 0.03;
+  m.position[1][150] += 0.03;
   run_pass(2, [&](Worker worker) { viscosity_field.measure(worker, m); });
   CHECK(viscosity_field.due());
   const auto update_by_two = [&] {
@@ -261,8 +263,8 @@ TEST_CASE("an update is due once a node has moved by a tenth of a spacing, and f
     run_pass(2, [&](Worker worker) { viscosity_field.update(worker, m, rate, mask); });
   };
   update_by_two();
-  m.x[3] = std::nan("");
-  m.y[160] = 1e300;
+  m.position[0][3] = std::nan("");
+  m.position[1][160] = 1e300;
   viscosity_field.measure({}, m);
   CHECK(viscosity_field.due());
   update_by_two();
@@ -275,7 +277,7 @@ TEST_CASE("where no cell is any more, the plain rate is back to the last bit") {
   NodeMask mask(core::Domain<2>({160, 64}, {true, false}));
   update(viscosity_field, m, rate, mask);
   CHECK(rate.row(20)[30] != static_cast<float>(1 / 0.7));
-  for (double& x : m.x) x += 80;
+  for (double& x : m.position[0]) x += 80;
   update(viscosity_field, m, rate, mask);
   for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 80; ++x) REQUIRE(rate.row(y)[x] == static_cast<float>(1 / 0.7));
@@ -296,8 +298,8 @@ TEST_CASE("an update after some cells have moved gives what all cells anew would
   for (int round = 0; round < 6; ++round) {
     const CellRange& cell = m.cells[static_cast<std::size_t>(round % 4)];
     for (int i = cell.first; i < cell.end(); ++i) {
-      m.x[static_cast<std::size_t>(i)] += 3.3 * round;
-      m.y[static_cast<std::size_t>(i)] -= 0.4;
+      m.position[0][static_cast<std::size_t>(i)] += 3.3 * round;
+      m.position[1][static_cast<std::size_t>(i)] -= 0.4;
     }
     update(kept, m, rate, mask);
     ViscosityField<double> fresh(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, {{nx, ny}, {true, periodic_y}});

@@ -38,16 +38,17 @@ std::vector<NamedLaws> shipped_laws() {
 }
 
 void turn_and_move(Membranes& m, double angle, double dx, double dy) {
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    const double x = m.x[i], y = m.y[i];
-    m.x[i] = dx + std::cos(angle) * x - std::sin(angle) * y;
-    m.y[i] = dy + std::sin(angle) * x + std::cos(angle) * y;
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    const double x = m.position[0][i], y = m.position[1][i];
+    m.position[0][i] = dx + std::cos(angle) * x - std::sin(angle) * y;
+    m.position[1][i] = dy + std::sin(angle) * x + std::cos(angle) * y;
   }
 }
 
 double largest_force(const Membranes& m) {
   double most = 0;
-  for (std::size_t i = 0; i < m.x.size(); ++i) most = std::max(most, std::hypot(m.force_x[i], m.force_y[i]));
+  for (std::size_t i = 0; i < m.position[0].size(); ++i)
+    most = std::max(most, std::hypot(m.force[0][i], m.force[1][i]));
   return most;
 }
 
@@ -63,7 +64,7 @@ double friction(double width, int segments = 31) {
     for (int phase = 0; phase < InteractionForces::phases; ++phase) forces.run({}, phase, m);
     double torque = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(segments); ++i)
-      torque += m.x[i] * m.force_y[i] - m.y[i] * m.force_x[i];
+      torque += m.position[0][i] * m.force[1][i] - m.position[1][i] * m.force[0][i];
     most = std::max(most, std::abs(torque) / radius / (2 * 3.141592653589793 * radius));
   }
   return most * width;
@@ -136,9 +137,9 @@ TEST_CASE("rigid motion of a deformed cell turns its forces with it and costs no
     CHECK(forces.energy(b) == Approx(forces.energy(a)).epsilon(1e-12));
     turn_and_move(b, -2.1, 0, 0);  // its positions no longer matter
     const double c = std::cos(2.1), s = std::sin(2.1), size = largest_force(a);
-    for (std::size_t i = 0; i < a.x.size(); ++i) {
-      REQUIRE(std::abs(c * b.force_x[i] + s * b.force_y[i] - a.force_x[i]) < 1e-11 * size);
-      REQUIRE(std::abs(c * b.force_y[i] - s * b.force_x[i] - a.force_y[i]) < 1e-11 * size);
+    for (std::size_t i = 0; i < a.position[0].size(); ++i) {
+      REQUIRE(std::abs(c * b.force[0][i] + s * b.force[1][i] - a.force[0][i]) < 1e-11 * size);
+      REQUIRE(std::abs(c * b.force[1][i] - s * b.force[0][i] - a.force[1][i]) < 1e-11 * size);
     }
   }
 }
@@ -154,10 +155,11 @@ TEST_CASE("a constant rest curvature changes the energy by a constant and no for
   double shift = 0;
   for (int trial = 0; trial < 3; ++trial) {
     deform(m, random, 3);
-    other.x = m.x, other.y = m.y;
+    other.position[0] = m.position[0], other.position[1] = m.position[1];
     const double zero = forces_of(m, {0.5, 1, 0}), value = forces_of(other, {0.5, 2, 0.05});
     const double size = largest_force(m);
-    for (std::size_t i = 0; i < m.x.size(); ++i) REQUIRE(std::abs(m.force_x[i] - other.force_x[i]) < 1e-12 * size);
+    for (std::size_t i = 0; i < m.position[0].size(); ++i)
+      REQUIRE(std::abs(m.force[0][i] - other.force[0][i]) < 1e-12 * size);
     // Eb/2 (kappa0^2 P - 2 kappa0 2 pi), P the rest perimeter: the curvatures of an outline add up to one turn.
     const double constant = 0.25 * (0.05 * 0.05 * m.cells[0].rest_perimeter - 0.1 * 2 * 3.141592653589793);
     CHECK(value - zero == Approx(constant).epsilon(1e-11));
@@ -165,8 +167,8 @@ TEST_CASE("a constant rest curvature changes the energy by a constant and no for
     shift = value - zero;
     forces_of(other, {0.5, 0, 0});
     double difference = 0;
-    for (std::size_t i = 0; i < m.x.size(); ++i) {
-      difference = std::max(difference, std::abs(m.force_x[i] - other.force_x[i]));
+    for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+      difference = std::max(difference, std::abs(m.force[0][i] - other.force[0][i]));
     }
     CHECK(difference > 0.01 * size);
   }
@@ -177,11 +179,11 @@ TEST_CASE("the stretch of a cell's segments is read off its outline") {
   const StretchRange rest = stretch_range(m, m.cells[0]);
   CHECK(rest.least == Approx(1).epsilon(1e-13));
   CHECK(rest.most == Approx(1).epsilon(1e-13));
-  for (double& x : m.x) x *= 1.25;
-  for (double& y : m.y) y *= 1.25;
+  for (double& x : m.position[0]) x *= 1.25;
+  for (double& y : m.position[1]) y *= 1.25;
   CHECK(stretch_range(m, m.cells[0]).least == Approx(1.25).epsilon(1e-13));
-  m.x[7] += 0.5 * (m.x[8] - m.x[7]);
-  m.y[7] += 0.5 * (m.y[8] - m.y[7]);
+  m.position[0][7] += 0.5 * (m.position[0][8] - m.position[0][7]);
+  m.position[1][7] += 0.5 * (m.position[1][8] - m.position[1][7]);
   CHECK(stretch_range(m, m.cells[0]).least == Approx(0.625).epsilon(1e-13));
   CHECK(stretch_range(m, m.cells[0]).most > 1.5);
 }
@@ -197,8 +199,8 @@ TEST_CASE(
     CAPTURE(acting.id);
     InteractionForces forces(m, {{{0, 0}, acting}}, periodic_box(10000));
     const auto run = [&] {
-      std::fill(m.force_x.begin(), m.force_x.end(), 0.0);
-      std::fill(m.force_y.begin(), m.force_y.end(), 0.0);
+      std::fill(m.force[0].begin(), m.force[0].end(), 0.0);
+      std::fill(m.force[1].begin(), m.force[1].end(), 0.0);
       for (int phase = 0; phase < InteractionForces::phases; ++phase) forces.run({}, phase, m);
     };
     run();

@@ -14,7 +14,8 @@ namespace {
 
 void random_velocity(Membranes& m, std::mt19937& random, double size) {
   std::uniform_real_distribution<double> uniform(-size, size);
-  for (std::size_t i = 0; i < m.x.size(); ++i) m.velocity_x[i] = uniform(random), m.velocity_y[i] = uniform(random);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i)
+    m.velocity[0][i] = uniform(random), m.velocity[1][i] = uniform(random);
 }
 
 }  // namespace
@@ -24,16 +25,16 @@ TEST_CASE("nodes move by their velocity and the largest step of each cell is kno
   Membranes m = biconcave_cells({{30, 20, 0}, {60, 40, 0}}, 97);
   m.largest_step.assign(2, 0.0);
   random_velocity(m, random, 0.1);
-  m.velocity_x[96] = 0.3;
-  m.velocity_y[97 + 50] = -0.4;
+  m.velocity[0][96] = 0.3;
+  m.velocity[1][97 + 50] = -0.4;
   const Membranes before = m;
   run_pass(2, [&](Worker worker) { move_nodes(worker, m); });
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    REQUIRE(m.x[i] == before.x[i] + m.velocity_x[i]);
-    REQUIRE(m.y[i] == before.y[i] + m.velocity_y[i]);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    REQUIRE(m.position[0][i] == before.position[0][i] + m.velocity[0][i]);
+    REQUIRE(m.position[1][i] == before.position[1][i] + m.velocity[1][i]);
   }
-  CHECK(m.largest_step[0] == Approx(std::hypot(0.3, m.velocity_y[96])));
-  CHECK(m.largest_step[1] == Approx(std::hypot(0.4, m.velocity_x[97 + 50])));
+  CHECK(m.largest_step[0] == Approx(std::hypot(0.3, m.velocity[1][96])));
+  CHECK(m.largest_step[1] == Approx(std::hypot(0.4, m.velocity[0][97 + 50])));
   CHECK(largest_step(m) == m.largest_step[1]);
   CHECK(farthest_node(m).node == 97 + 50);
 }
@@ -45,7 +46,7 @@ TEST_CASE("a velocity that is no number shows in the largest step, wherever it i
   Membranes m = biconcave_cells({{30, 20, 0}, {60, 40, 0}}, 97);
   m.largest_step.assign(2, 0.0);
   random_velocity(m, random, 0.1);
-  m.velocity_y[node] = bad;
+  m.velocity[1][node] = bad;
   move_nodes({}, m);
   CHECK(std::isnan(largest_step(m)));
   CHECK(farthest_node(m).node == static_cast<int>(node));
@@ -56,7 +57,7 @@ TEST_CASE("a watch never overlooks a displacement beyond its limit, though it se
   Membranes m = biconcave_cells({{30, 20, 0}, {60, 40, 0}});
   m.largest_step.assign(2, 0.0);
   DisplacementWatch watch(m);
-  std::vector<double> x = m.x, y = m.y;
+  std::vector<double> x = m.position[0], y = m.position[1];
   int exceeded = 0;
   for (int step = 0; step < 400; ++step) {
     watch.measure({}, m);
@@ -64,14 +65,14 @@ TEST_CASE("a watch never overlooks a displacement beyond its limit, though it se
       const CellRange& cell = m.cells[static_cast<std::size_t>(c)];
       double most = step == 0 ? 1 : 0;  // nothing is remembered before the first step
       for (auto i = static_cast<std::size_t>(cell.first); i < static_cast<std::size_t>(cell.end()); ++i) {
-        if (step > 0) most = std::max(most, std::hypot(m.x[i] - x[i], m.y[i] - y[i]));
+        if (step > 0) most = std::max(most, std::hypot(m.position[0][i] - x[i], m.position[1][i] - y[i]));
       }
       REQUIRE(watch.moved(c) == most > 0.2);
       if (!watch.moved(c)) continue;
       ++exceeded;
       watch.remember(c, m, 0.2);
       for (auto i = static_cast<std::size_t>(cell.first); i < static_cast<std::size_t>(cell.end()); ++i) {
-        x[i] = m.x[i], y[i] = m.y[i];
+        x[i] = m.position[0][i], y[i] = m.position[1][i];
       }
     }
     random_velocity(m, random, 0.02);

@@ -72,16 +72,16 @@ TEST_CASE("a watch takes memory for the cells that are known") {
     nodes.part.push_back({.owned = false, .known = c == 2, .reaching = false, .inside = false});
   }
   nodes.known = {2};
-  nodes.x.assign(many, 4.0), nodes.y.assign(many, 5.0);
+  nodes.position[0].assign(many, 4.0), nodes.position[1].assign(many, 5.0);
   DisplacementWatch::Memory memory(nodes);
-  CHECK(resident_pages(memory.x.data(), 2 * of_cell) == 0);
-  CHECK(resident_pages(memory.x.data() + 3 * of_cell, of_cell) == 0);
+  CHECK(resident_pages(memory.position[0].data(), 2 * of_cell) == 0);
+  CHECK(resident_pages(memory.position[0].data() + 3 * of_cell, of_cell) == 0);
   CHECK_FALSE(memory.any(nodes));
-  std::fill_n(memory.x.data() + 2 * of_cell, of_cell, 1.0);
+  std::fill_n(memory.position[0].data() + 2 * of_cell, of_cell, 1.0);
   CHECK(memory.any(nodes));
   memory.exchange_places(nodes);
-  CHECK((nodes.x[2 * of_cell] == 1 && memory.x[2 * of_cell] == 4));
-  CHECK((nodes.x[2 * of_cell - 1] == 4 && nodes.x[3 * of_cell] == 4));
+  CHECK((nodes.position[0][2 * of_cell] == 1 && memory.position[0][2 * of_cell] == 4));
+  CHECK((nodes.position[0][2 * of_cell - 1] == 4 && nodes.position[0][3 * of_cell] == 4));
 }
 
 TEST_CASE("a rank that does not know cells forgets their nodes, and what their contacts remember") {
@@ -92,7 +92,8 @@ TEST_CASE("a rank that does not know cells forgets their nodes, and what their c
     const bool known = c >= 40 && c != 50;
     nodes.part.push_back({.owned = known && c < 60, .known = known, .reaching = known, .inside = false});
   }
-  for (auto* values : {&nodes.x, &nodes.y, &nodes.force_x, &nodes.velocity_y}) values->assign(cells * of_cell, 4.0);
+  for (auto* values : {&nodes.position[0], &nodes.position[1], &nodes.force[0], &nodes.velocity[1]})
+    values->assign(cells * of_cell, 4.0);
   nodes.state.push_back({0, 0, "law", "state", 1, std::vector<double>(cells * of_cell, 4.0)});
   nodes.contacts.of_cell.assign(cells, {{0, 1, {}, {1, 2, 3}}});
 
@@ -101,7 +102,8 @@ TEST_CASE("a rank that does not know cells forgets their nodes, and what their c
   CHECK((unknown[0].begin == 0 && unknown[0].end == 40 * of_cell));
   CHECK((unknown[1].begin == 50 * of_cell && unknown[1].end == 51 * of_cell));
   nodes.forget(unknown);
-  for (const auto* values : {&nodes.x, &nodes.y, &nodes.force_x, &nodes.velocity_y, &nodes.state[0].value}) {
+  for (const auto* values :
+       {&nodes.position[0], &nodes.position[1], &nodes.force[0], &nodes.velocity[1], &nodes.state[0].value}) {
     CHECK(resident_pages(values->data(), 40 * of_cell) == 0);
     for (const int c : {40, 49, 51, 99}) {
       const auto first = values->begin() + c * of_cell;

@@ -65,21 +65,24 @@ TEST_CASE("semi-implicit forces sum to zero and are the explicit ones where noth
   const ForceSums sums = force_sums(stiff);
   CHECK(std::abs(sums.x) < 1e-12 * sums.size);
   CHECK(std::abs(sums.y) < 1e-12 * sums.size);
-  for (std::size_t i = 0; i < m.x.size(); ++i) REQUIRE(soft.force_x[i] == Approx(m.force_x[i]).margin(1e-17));
+  for (std::size_t i = 0; i < m.position[0].size(); ++i)
+    REQUIRE(soft.force[0][i] == Approx(m.force[0][i]).margin(1e-17));
 }
 
 TEST_CASE("a semi-implicit step looks one step ahead") {
   auto random = generator(203);
   Membranes m = biconcave_cells({{100, 60, 0.4}});
   deform(m, random, 4, 0.1);
-  for (std::size_t i = 0; i < m.x.size(); ++i) m.velocity_x[i] = 0.01 * m.y[i], m.velocity_y[i] = -0.02;
+  for (std::size_t i = 0; i < m.position[0].size(); ++i)
+    m.velocity[0][i] = 0.01 * m.position[1][i], m.velocity[1][i] = -0.02;
   Membranes moved = m;
-  for (std::size_t i = 0; i < m.x.size(); ++i) moved.x[i] += m.velocity_x[i], moved.y[i] += m.velocity_y[i];
-  moved.velocity_x.assign(m.x.size(), 0), moved.velocity_y.assign(m.x.size(), 0);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i)
+    moved.position[0][i] += m.velocity[0][i], moved.position[1][i] += m.velocity[1][i];
+  moved.velocity[0].assign(m.position[0].size(), 0), moved.velocity[1].assign(m.position[0].size(), 0);
   MembraneForces forces(m, {.laws = {{neo_hookean(2), bending(3)}}, .semi_implicit = true});
   moved.state = m.state;
   forces.run({}, m);
   forces.run({}, moved);
-  CHECK(m.force_x == moved.force_x);
-  CHECK(m.force_y == moved.force_y);
+  CHECK(m.force[0] == moved.force[0]);
+  CHECK(m.force[1] == moved.force[1]);
 }

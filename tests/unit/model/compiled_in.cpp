@@ -18,7 +18,7 @@ constexpr double radius = 20, gap = 1;
 
 double sum_of_sizes(const Membranes& m, const CellRange& cell) {
   double sum = 0;
-  for (int i = cell.first; i < cell.end(); ++i) sum += std::hypot(m.force_x[i], m.force_y[i]);
+  for (int i = cell.first; i < cell.end(); ++i) sum += std::hypot(m.force[0][i], m.force[1][i]);
   return sum;
 }
 
@@ -29,10 +29,10 @@ TEST_CASE("a stretched ring of springs pulls every node inwards by twice the ten
   MembraneForces forces(m, {.laws = {{fake_law<Spring>(0.4)}, {fake_law<Spring>(0.4)}}});
   forces.run({}, m);
   const double expected = 2 * 0.4 * 0.25 * std::sin(std::numbers::pi / segments);
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    const double r = std::hypot(m.x[i], m.y[i]);
-    REQUIRE(m.force_x[i] == Approx(-expected * m.x[i] / r).margin(1e-14));
-    REQUIRE(m.force_y[i] == Approx(-expected * m.y[i] / r).margin(1e-14));
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    const double r = std::hypot(m.position[0][i], m.position[1][i]);
+    REQUIRE(m.force[0][i] == Approx(-expected * m.position[0][i] / r).margin(1e-14));
+    REQUIRE(m.force[1][i] == Approx(-expected * m.position[1][i] / r).margin(1e-14));
   }
 }
 
@@ -43,8 +43,8 @@ TEST_CASE("a constant potential between two rings presses on each with the force
   // Up to the corners of the polygons: (pi / segments)^2 / 2.
   const double mean = segments * (m.types[0]->rest_weight[0] + m.types[1]->rest_weight[0]) / 2;
   for (const CellRange& cell : m.cells) CHECK(sum_of_sizes(m, cell) == Approx(0.3 * mean).epsilon(2e-3));
-  CHECK(m.force_x[0] < 0);         // the inner ring's first node, at angle 0: inwards
-  CHECK(m.force_x[segments] > 0);  // the outer ring's
+  CHECK(m.force[0][0] < 0);         // the inner ring's first node, at angle 0: inwards
+  CHECK(m.force[0][segments] > 0);  // the outer ring's
 }
 
 TEST_CASE("a law without a number leaves no node with a force") {
@@ -52,7 +52,7 @@ TEST_CASE("a law without a number leaves no node with a force") {
   const MembraneLaws laws = {fake_law<Spring>(0.4), fake_law<NoNumber>(0)};
   MembraneForces forces(m, {.laws = {laws, laws}});
   forces.run({}, m);
-  for (const double force : m.force_x) REQUIRE(std::isnan(force));
+  for (const double force : m.force[0]) REQUIRE(std::isnan(force));
 }
 
 TEST_CASE("a model that refuses its parameters is refused in its own words") {

@@ -54,10 +54,10 @@ struct Ring {
 Membranes membranes_of(const Ring& ring) {
   Membranes m;
   m.cells.push_back({{0, static_cast<int>(ring.x.size())}, 0, 0, 0});
-  m.x = ring.x, m.y = ring.y, m.velocity_x = ring.velocity_x, m.velocity_y = ring.velocity_y;
+  m.position[0] = ring.x, m.position[1] = ring.y, m.velocity[0] = ring.velocity_x, m.velocity[1] = ring.velocity_y;
   double largest = 0;
-  for (std::size_t i = 0; i < m.x.size(); ++i)
-    largest = std::max(largest, std::hypot(m.velocity_x[i], m.velocity_y[i]));
+  for (std::size_t i = 0; i < m.position[0].size(); ++i)
+    largest = std::max(largest, std::hypot(m.velocity[0][i], m.velocity[1][i]));
   m.largest_step = {largest};
   return m;
 }
@@ -178,10 +178,10 @@ TEST_CASE("without a wave the reason and the surroundings name the mode", "[fail
   Membranes two = one;
   two.cells.push_back({{100, 100}, 0, 0, 0});
   for (int i = 0; i < 100; ++i) {
-    two.x.push_back(one.x[static_cast<std::size_t>(i)] + 35);
-    two.y.push_back(one.y[static_cast<std::size_t>(i)]);
-    two.velocity_x.push_back(0);
-    two.velocity_y.push_back(0);
+    two.position[0].push_back(one.position[0][static_cast<std::size_t>(i)] + 35);
+    two.position[1].push_back(one.position[1][static_cast<std::size_t>(i)]);
+    two.velocity[0].push_back(0);
+    two.velocity[1].push_back(0);
   }
   CHECK(mode(two, "node_step", 0, {36, 30}, 0) == "collapse");
   CHECK(mode(two, "mach", -1, {37, 30}, 0) == "collapse");

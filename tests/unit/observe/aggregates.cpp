@@ -60,7 +60,7 @@ TEST_CASE("the gap to a wall is that of the nearer one, less than nothing beyond
   CHECK(wall_gap(m, m.cells[2], channel) == Approx(-1));
   CHECK(std::isnan(wall_gap(m, m.cells[0], test::periodic_box(100, 20))));
   Membranes broken = m;
-  broken.x[7] = std::nan("");
+  broken.position[0][7] = std::nan("");
   CHECK(std::isnan(wall_gap(broken, broken.cells[0], channel)));
 }
 
@@ -179,7 +179,7 @@ TEST_CASE("the deepest node inside another surface is found, over a border too, 
     CHECK(found->depth == Approx(depth).epsilon(0.03));
     CHECK(found->cell + found->other == 2);
     CHECK(found->cell != 1);  // which touches neither
-    CHECK(s.x[found->node] == Approx(found->cell == 0 ? -2 : 28 + depth).epsilon(0.02));
+    CHECK(s.position[0][found->node] == Approx(found->cell == 0 ? -2 : 28 + depth).epsilon(0.02));
   }
 }
 

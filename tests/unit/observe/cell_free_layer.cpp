@@ -20,8 +20,8 @@ Membranes polygons(const std::vector<std::vector<std::array<double, 2>>>& cells)
   for (const auto& corners : cells) {
     m.cells.push_back({{m.node_count(), static_cast<int>(corners.size())}, 0, 0, 0});
     for (const auto& corner : corners) {
-      m.x.push_back(corner[0]);
-      m.y.push_back(corner[1]);
+      m.position[0].push_back(corner[0]);
+      m.position[1].push_back(corner[1]);
     }
   }
   return m;

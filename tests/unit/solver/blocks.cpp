@@ -139,7 +139,8 @@ End<T, Set> simulate(const Planned<Set::dimension>& planned, const Domain<Set::d
     }
     end.in_order.clear();
     const auto add = [&](int c, std::vector<double>& x) {
-      x.insert(x.end(), end.cells.x.begin() + end.cells.cells[c].first, end.cells.x.begin() + end.cells.cells[c].end());
+      x.insert(x.end(), end.cells.position[0].begin() + end.cells.cells[c].first,
+               end.cells.position[0].begin() + end.cells.cells[c].end());
     };
     give_in_order<double>(
         solver.cell_tasks()->ghosts(), end.cells, add,
@@ -198,22 +199,22 @@ void compare(const End<T, Set>& whole, const End<T, Set>& block) {
   for (int c = 0; c < block.cells.cell_count(); ++c) {
     const CellRange& cell = block.cells.cells[c];
     if (block.seen.knows(c)) {
-      for (const auto values : {&CellNodes::x, &CellNodes::y, &CellNodes::z})
-        CHECK(same(block.seen.*values, whole.cells.*values, cell.first, cell.end()));
+      for (std::size_t k = 0; k < 3; ++k)
+        CHECK(same(block.seen.position[k], whole.cells.position[k], cell.first, cell.end()));
     }
     if (!block.cells.owns(c)) continue;
     for (int other = 0; other < block.cells.cell_count(); ++other) {
       if (distance_along_axes(boxes[c], boxes[other], whole.domain) <= sight) CHECK(block.seen.knows(other));
     }
-    for (const auto values :
-         {&CellNodes::x, &CellNodes::y, &CellNodes::z, &CellNodes::velocity_x, &CellNodes::velocity_y,
-          &CellNodes::velocity_z, &CellNodes::force_x, &CellNodes::force_y, &CellNodes::force_z})
-      CHECK(same(block.cells.*values, whole.cells.*values, cell.first, cell.end()));
+    for (const auto arrays : {&CellNodes::position, &CellNodes::velocity, &CellNodes::force}) {
+      for (std::size_t k = 0; k < 3; ++k)
+        CHECK(same((block.cells.*arrays)[k], (whole.cells.*arrays)[k], cell.first, cell.end()));
+    }
     for (const auto values : {&CellNodes::largest_step, &CellNodes::area_leakage})
       CHECK(same(block.cells.*values, whole.cells.*values, c, c + 1));
     compare_memory(c, whole.cells, block.cells);
   }
-  if (!block.in_order.empty()) CHECK((block.in_order == whole.cells.x));
+  if (!block.in_order.empty()) CHECK((block.in_order == whole.cells.position[0]));
   if (!block.observed.empty()) CHECK((block.observed == whole.observed));
   CHECK(block.failure == whole.failure);
 }

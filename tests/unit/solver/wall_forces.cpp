@@ -53,7 +53,7 @@ struct Bench {
     return sum;
   }
   [[nodiscard]] double force(int i, int axis) const {
-    return (axis == 0 ? cells.force_x : axis == 1 ? cells.force_y : cells.force_z)[i];
+    return (axis == 0 ? cells.force[0] : axis == 1 ? cells.force[1] : cells.force[2])[i];
   }
   [[nodiscard]] double particle_stress(bool with_images = true) {
     const auto across = [this](int c) { return solver->cell_tasks()->force_across_images(c); };
@@ -191,7 +191,8 @@ Means means_of(const Case& c, double strain) {
     means.particles += 1 / static_cast<double>(looks) + bench.particle_stress() / unit / looks;
     for (const CellRange& cell : bench.cells.cells) {
       double force = 0, middle = 0;
-      for (int i = cell.first; i < cell.end(); ++i) force += bench.force(i, 0), middle += bench.cells.y[i] / cell.count;
+      for (int i = cell.first; i < cell.end(); ++i)
+        force += bench.force(i, 0), middle += bench.cells.position[1][i] / cell.count;
       means.pairs -= force * middle / static_cast<double>(bench.solver->setup().domain.nodes()) / unit / looks;
     }
     bench.solver->advance();
@@ -289,7 +290,7 @@ namespace {
 template <class Set>
 std::pair<double, double> stress_and_energy(const Case& c, double strain) {
   Bench<double, Set> bench(c);
-  for (int i = 0; i < bench.cells.node_count(); ++i) bench.cells.x[i] += strain * bench.cells.y[i];
+  for (int i = 0; i < bench.cells.node_count(); ++i) bench.cells.position[0][i] += strain * bench.cells.position[1][i];
   bench.start();
   bench.solver->compute_forces();
   return {bench.particle_stress() * static_cast<double>(bench.solver->setup().domain.nodes()),
@@ -317,7 +318,7 @@ template <class Set>
 std::pair<double, double> stress_of_moved(const Case& c, double periods) {
   Bench<double, Set> bench(c);
   const CellRange& last = bench.cells.cells.back();
-  for (int i = last.first; i < last.end(); ++i) bench.cells.y[i] += periods * bench.scene.domain.nodes[1];
+  for (int i = last.first; i < last.end(); ++i) bench.cells.position[1][i] += periods * bench.scene.domain.nodes[1];
   bench.start();
   bench.solver->compute_forces();
   return {bench.particle_stress(), bench.particle_stress(false)};

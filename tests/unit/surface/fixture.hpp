@@ -32,8 +32,8 @@ inline Surfaces cells_out_of_shape(std::mt19937& random) {
   s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::biconcave_disc(5, 6))));
   add_cell(s, 0, {1000, 20, 30});
   add_cell(s, 1, {30, 2000, -40}, Eigen::AngleAxisd(1, Vec<3>(1, 2, 3).normalized()).toRotationMatrix());
-  for (auto* places : {&s.x, &s.y, &s.z}) {
-    for (double& place : *places) place += any(random);
+  for (auto& places : s.position) {
+    for (double& place : places) place += any(random);
   }
   return s;
 }
@@ -44,7 +44,7 @@ inline core::SurfaceNormals normals_of(const Surfaces& s) {
   return normals;
 }
 
-inline Vec<3> force_on(const Surfaces& s, int i) { return {s.force_x[i], s.force_y[i], s.force_z[i]}; }
+inline Vec<3> force_on(const Surfaces& s, int i) { return {s.force[0][i], s.force[1][i], s.force[2][i]}; }
 
 inline double largest_force(const Surfaces& s) {
   double most = 0;

@@ -67,11 +67,12 @@ std::vector<NamedLaws> laws_of_surfaces() {
 
 void deform(Surfaces& s, std::mt19937& random, double noise) {
   std::uniform_real_distribution<double> any(-noise, noise);
-  const Vec<3> center(s.x[0], s.y[0], s.z[0]);
+  const Vec<3> center(s.position[0][0], s.position[1][0], s.position[2][0]);
   for (int i = 0; i < s.node_count(); ++i) {
-    s.x[i] = center.x() + 1.3 * (s.x[i] - center.x()) + any(random);
-    s.y[i] = center.y() + 0.8 * (s.y[i] - center.y()) + 0.2 * (s.x[i] - center.x()) + any(random);
-    s.z[i] += any(random);
+    s.position[0][i] = center.x() + 1.3 * (s.position[0][i] - center.x()) + any(random);
+    s.position[1][i] =
+        center.y() + 0.8 * (s.position[1][i] - center.y()) + 0.2 * (s.position[0][i] - center.x()) + any(random);
+    s.position[2][i] += any(random);
   }
 }
 
@@ -80,11 +81,11 @@ double gradient_error(SurfaceForces& forces, Surfaces& s, std::mt19937& random) 
   constexpr double h = 2e-4;
   double worst = 0;
   const double most = largest_force(s);
-  std::vector<double>* const position[3] = {&s.x, &s.y, &s.z};
+  auto& position = s.position;
   for (int trial = 0; trial < 40; ++trial) {
-    const auto i = random() % s.x.size();
+    const auto i = random() % s.position[0].size();
     const auto k = random() % 3;
-    double& coordinate = (*position[k])[i];
+    double& coordinate = position[k][i];
     const double here = coordinate;
     const auto energy = [&](double step) {
       coordinate = here + step;
@@ -157,12 +158,12 @@ TEST_CASE("the forces on one cell do not depend on where others are, nor on the 
   const MembraneLaws laws = laws_of_surfaces().back().laws;
   SurfaceForces one(s, {laws, laws});
   one.run({}, s);
-  const std::vector<double> x = s.force_x, y = s.force_y, z = s.force_z;
+  const std::vector<double> x = s.force[0], y = s.force[1], z = s.force[2];
   SurfaceForces three(s, {laws, laws});
   for (const int index : {2, 0, 1}) three.run({index, 3}, s);
-  CHECK(s.force_x == x);
-  CHECK(s.force_y == y);
-  CHECK(s.force_z == z);
+  CHECK(s.force[0] == x);
+  CHECK(s.force[1] == y);
+  CHECK(s.force[2] == z);
 }
 
 TEST_CASE("a blown up sphere stays one and comes to rest under the pressure of Laplace's law") {
@@ -175,7 +176,8 @@ TEST_CASE("a blown up sphere stays one and comes to rest under the pressure of L
   // Down the energy, as if every node met the same friction.
   for (int step = 0; step < 4000; ++step) {
     forces.run({}, s);
-    for (int i = 0; i < s.node_count(); ++i) s.x[i] += s.force_x[i], s.y[i] += s.force_y[i], s.z[i] += s.force_z[i];
+    for (int i = 0; i < s.node_count(); ++i)
+      s.position[0][i] += s.force[0][i], s.position[1][i] += s.force[1][i], s.position[2][i] += s.force[2][i];
   }
   CHECK(largest_force(s) < 1e-9);
   const Mesh& mesh = s.types[0]->mesh;
@@ -205,8 +207,8 @@ TEST_CASE(
   auto random = generator(75);
   Surfaces s = one_cell(shape::unit_sphere(3));
   std::uniform_real_distribution<double> any(-1e-6, 1e-6);
-  for (auto* places : {&s.x, &s.y, &s.z}) {
-    for (double& place : *places) place += any(random);
+  for (auto& places : s.position) {
+    for (double& place : places) place += any(random);
   }
   Surfaces other = s;
   SurfaceForces(s, {{surface_law("hooke", {0.3, 0.5})}}).run({}, s);

@@ -130,8 +130,8 @@ TEST_CASE(
   auto random = generator(212);
   std::uniform_real_distribution<double> any(-0.1, 0.1);
   Surfaces s = one_cell(shape::biconcave_disc(6, 3));
-  for (auto* numbers : {&s.x, &s.y, &s.z}) {
-    for (double& number : *numbers) number += any(random);
+  for (auto& numbers : s.position) {
+    for (double& number : numbers) number += any(random);
   }
   const auto forces_of = [](Surfaces& cells, double modulus, bool semi_implicit) {
     SurfaceForces forces(cells, {{surface_law("neo-hookean", {modulus, 0}), surface_law("bending", {modulus, 0, 0})}});
@@ -144,20 +144,21 @@ TEST_CASE(
   CHECK((force_on(weak, 17) - force_on(explicitly, 17)).norm() < 1e-6 * largest_force(explicitly));
   REQUIRE(largest_force(explicitly) > 0);
 
-  for (auto* numbers : {&s.velocity_x, &s.velocity_y, &s.velocity_z}) {
-    for (double& number : *numbers) number = any(random);
+  for (auto& numbers : s.velocity) {
+    for (double& number : numbers) number = any(random);
   }
   Surfaces moved = s;
   for (int i = 0; i < s.node_count(); ++i) {
-    moved.x[i] += s.velocity_x[i], moved.y[i] += s.velocity_y[i], moved.z[i] += s.velocity_z[i];
+    moved.position[0][i] += s.velocity[0][i], moved.position[1][i] += s.velocity[1][i],
+        moved.position[2][i] += s.velocity[2][i];
   }
-  for (auto* numbers : {&moved.velocity_x, &moved.velocity_y, &moved.velocity_z}) {
-    std::fill(numbers->begin(), numbers->end(), 0.0);
+  for (auto& numbers : moved.velocity) {
+    std::fill(numbers.begin(), numbers.end(), 0.0);
   }
   forces_of(s, 20, true);
   forces_of(moved, 20, true);
-  CHECK(s.force_x == moved.force_x);
-  CHECK(s.force_z == moved.force_z);
+  CHECK(s.force[0] == moved.force[0]);
+  CHECK(s.force[2] == moved.force[2]);
   Vec<3> sum = Vec<3>::Zero();
   for (int i = 0; i < s.node_count(); ++i) sum += force_on(s, i);
   CHECK(sum.norm() < 1e-11 * largest_force(s));

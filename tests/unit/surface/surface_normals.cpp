@@ -16,9 +16,9 @@ TEST_CASE("the normals around a node add up to six times the gradient of the vol
   for (int cell = 0; cell < s.cell_count(); ++cell) {
     const auto volume = [&] { return enclosed_volume(s.type_of(cell).mesh, s.nodes(cell)); };
     for (const int i : {s.cells[cell].first, s.cells[cell].first + 7, s.cells[cell].end() - 1}) {
-      std::vector<double>* const places[] = {&s.x, &s.y, &s.z};
+      auto& places = s.position;
       for (std::size_t k = 0; k < 3; ++k) {
-        double& place = (*places[k])[i];
+        double& place = places[k][i];
         const double before = place;
         place = before + little;
         const double more = volume();

@@ -16,8 +16,8 @@ namespace {
 Surfaces cells_at_random(std::mt19937& random) {
   std::uniform_real_distribution<double> any(-1, 1);
   Surfaces s = cells_out_of_shape(random);
-  for (auto* numbers : {&s.force_x, &s.force_y, &s.force_z, &s.velocity_x, &s.velocity_y, &s.velocity_z}) {
-    numbers->resize(s.x.size());
+  for (auto* numbers : {&s.force[0], &s.force[1], &s.force[2], &s.velocity[0], &s.velocity[1], &s.velocity[2]}) {
+    numbers->resize(s.position[0].size());
     for (double& number : *numbers) number = any(random);
   }
   s.area_leakage.assign(2, 0.0);
@@ -38,7 +38,8 @@ void rest_as_they_are(Surfaces& s) {
 /// Nodes go `steps` times as far as their velocities take them in one.
 void move(Surfaces& s, double steps) {
   for (int i = 0; i < s.node_count(); ++i)
-    s.x[i] += steps * s.velocity_x[i], s.y[i] += steps * s.velocity_y[i], s.z[i] += steps * s.velocity_z[i];
+    s.position[0][i] += steps * s.velocity[0][i], s.position[1][i] += steps * s.velocity[1][i],
+        s.position[2][i] += steps * s.velocity[2][i];
 }
 
 struct Sums {
@@ -49,7 +50,8 @@ Sums sums(const Surfaces& s, int cell) {
   Sums result;
   const Vec<3> origin = s.nodes(cell)[0];
   for (int i = s.cells[cell].first; i < s.cells[cell].end(); ++i) {
-    const Vec<3> force(s.force_x[i], s.force_y[i], s.force_z[i]), place(s.x[i], s.y[i], s.z[i]);
+    const Vec<3> force(s.force[0][i], s.force[1][i], s.force[2][i]),
+        place(s.position[0][i], s.position[1][i], s.position[2][i]);
     result.force += force, result.torque += (place - origin).cross(force), result.size += force.norm();
   }
   return result;
@@ -68,7 +70,7 @@ TEST_CASE("forces without their pressure do no work on the volume and have the s
     CHECK((after.torque - before[cell].torque).norm() < 1e-11 * after.size);
   }
   // Nodes that go along the forces, a little forth and back: the volume's difference is the forces' work on it.
-  s.velocity_x = s.force_x, s.velocity_y = s.force_y, s.velocity_z = s.force_z;
+  s.velocity[0] = s.force[0], s.velocity[1] = s.force[1], s.velocity[2] = s.force[2];
   constexpr double little = 1e-5;
   Surfaces forth = s, back = s;
   move(forth, little), move(back, -little);
@@ -86,8 +88,8 @@ TEST_CASE("what the fluid gets from forces without pressure is what cells lose t
   const auto power = [](const Surfaces& forces, const Surfaces& motion) {
     double sum = 0;
     for (int i = 0; i < forces.node_count(); ++i) {
-      sum += forces.force_x[i] * motion.velocity_x[i] + forces.force_y[i] * motion.velocity_y[i] +
-             forces.force_z[i] * motion.velocity_z[i];
+      sum += forces.force[0][i] * motion.velocity[0][i] + forces.force[1][i] * motion.velocity[1][i] +
+             forces.force[2][i] * motion.velocity[2][i];
     }
     return sum;
   };
@@ -101,15 +103,15 @@ TEST_CASE("the volume correction makes no cell larger or smaller, and tells what
   auto random = generator(93);
   Surfaces s = cells_at_random(random);
   rest_as_they_are(s);
-  for (auto* velocity : {&s.velocity_x, &s.velocity_y, &s.velocity_z}) {
-    for (double& v : *velocity) v *= 1e-4;
+  for (auto& velocity : s.velocity) {
+    for (double& v : velocity) v *= 1e-4;
   }
   Surfaces free = s, shared = s;
   move(free, 1);
   const SurfaceNormals normals = normals_of(s);
   keep_volumes({}, s, normals);
   for (int worker = 0; worker < 3; ++worker) keep_volumes({worker, 3}, shared, normals);
-  CHECK(shared.velocity_x == s.velocity_x);
+  CHECK(shared.velocity[0] == s.velocity[0]);
   CHECK(shared.area_leakage == s.area_leakage);
   move(s, 1);
   for (int cell = 0; cell < 2; ++cell) {
@@ -130,7 +132,7 @@ TEST_CASE("in a steady flow the leak of volume that is told is that of a strain 
   keep_volumes({}, s, normals, 0.01);
   const std::vector<double> leak = s.area_leakage;
   for (int step = 1; step < 1000; ++step) {
-    s.velocity_x = before.velocity_x, s.velocity_y = before.velocity_y, s.velocity_z = before.velocity_z;
+    s.velocity[0] = before.velocity[0], s.velocity[1] = before.velocity[1], s.velocity[2] = before.velocity[2];
     keep_volumes({}, s, normals, 0.01);
   }
   for (int cell = 0; cell < 2; ++cell) CHECK(s.area_leakage[cell] == Approx(leak[cell] / 0.01).epsilon(0.01));
@@ -144,8 +146,7 @@ TEST_CASE("the volume correction brings a wrong volume back") {
   larger.rest_volume *= 1.01;
   s.types[1] = std::make_shared<const RestSurface>(larger);
   for (int step = 0; step < 500; ++step) {
-    for (auto* velocity : {&s.velocity_x, &s.velocity_y, &s.velocity_z})
-      std::fill(velocity->begin(), velocity->end(), 0.0);
+    for (auto& velocity : s.velocity) std::fill(velocity.begin(), velocity.end(), 0.0);
     keep_volumes({}, s, normals_of(s));
     move(s, 1);
   }
