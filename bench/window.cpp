@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/contact/interaction_forces.hpp"
+#include "core/contact/interactions.hpp"
 #include "core/fluid/node_mask.hpp"
 #include "core/solver/ghost_cells.hpp"
 #include "plan/solver_setup.hpp"

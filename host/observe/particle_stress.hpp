@@ -10,7 +10,7 @@
 
 namespace rouleau::observe {
 
-/// Of a cell: what its interactions say (InteractionForces::force_across_images). None: nothing acts through images across y.
+/// Of a cell: what its interactions say (Interactions::force_across_images). None: nothing acts through images across y.
 using ForceAcrossImages = std::function<double(int cell)>;
 
 /// Stress that the cells add to the suspension, xy component per area of the domain, lattice units: all forces on their

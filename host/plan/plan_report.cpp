@@ -167,9 +167,9 @@ std::vector<PackedCells> packed_cells(const scene::Scene& scene) {
   return packed;
 }
 
-/// Closest points on others' membranes, in three dimensions on a cell's own, too.
+/// Closest points on others' membranes, or on a cell's own.
 bool looks_for_neighbours(const Plan& plan) {
-  return plan.has_interactions || (plan.scene->domain.depth && plan.has_self_interactions);
+  return plan.has_interactions || plan.has_self_interactions;
 }
 
 std::vector<PlannedPass> planned_passes(const Plan& plan) {
@@ -196,7 +196,6 @@ std::vector<PlannedPass> planned_passes(const Plan& plan) {
   const core::StepFeatures features{.cells = plan.has_cells,
                                     .interactions = looks_for_neighbours(plan),
                                     .wall_interactions = plan.has_wall_interactions,
-                                    .self_interactions = !space && plan.has_self_interactions,
                                     .viscosity_contrast = plan.viscosity_contrast,
                                     .slip_correction = plan.has_cells && slip,
                                     .area_correction = plan.has_cells && area};
@@ -230,10 +229,9 @@ std::vector<Omission> omissions(const Plan& plan) {
       omit("area correction",
            std::string("numerics.area_correction is false: leaks show as ") + (space ? "volume" : "area") + " drift");
     if (!looks_for_neighbours(plan)) {
-      const bool others = plan.has_wall_interactions || plan.has_self_interactions;
-      omit("neighbour search", scene.interactions.empty() ? "the scene has no interaction"
-                               : others                   ? "no interaction between cells is active"
-                                                          : "no interaction is active");
+      omit("neighbour search", scene.interactions.empty()   ? "the scene has no interaction"
+                               : plan.has_wall_interactions ? "no interaction between cells is active"
+                                                            : "no interaction is active");
     }
   }
   for (const PlannedModel& model : plan.interactions) omit_inactive("interaction", model);

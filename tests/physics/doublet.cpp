@@ -6,7 +6,7 @@
 #include <memory>
 #include <numbers>
 
-#include "core/contact/surface_interactions.hpp"
+#include "core/contact/interactions.hpp"
 #include "minimise.hpp"
 #include "scene_run.hpp"
 #include "unit/contact/surface_fixture.hpp"
@@ -33,7 +33,7 @@ class Doublet {
   void relax(double depth, int most_steps, double longest) {
     depth_ = depth;
     const auto morse = shipped(ModelKind::interaction, "morse");
-    contacts_ = std::make_unique<core::SurfaceInteractions>(
+    contacts_ = std::make_unique<core::Interactions<3>>(
         cells_,
         std::vector<core::Interaction>{{{0, 0},
                                         make_potential(morse, {depth, 1 / well_.range, well_.distance, well_.cutoff},
@@ -109,7 +109,7 @@ class Doublet {
   Well well_;
   Surfaces cells_;
   core::SurfaceForces membranes_;
-  std::unique_ptr<core::SurfaceInteractions> contacts_;
+  std::unique_ptr<core::Interactions<3>> contacts_;
   double depth_ = 0;
 };
 

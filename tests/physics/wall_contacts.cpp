@@ -56,7 +56,7 @@ double gap_of(const SolverBench& bench) {  // spacings
 /// unit masses, every component of which stops where it turns against its force (Bitzek et al., 2006).
 void minimise(const SolverSetup& setup, Membranes& m, double area) {
   MembraneForces membrane(m, {.laws = {setup.cell_types[0].laws}, .viscosity = setup.viscosity()});
-  WallContacts walls(m, setup.wall_interactions, setup.domain);
+  WallContacts<2> walls(m, setup.wall_interactions, setup.domain);
   const CellRange& cell = m.cells[0];
   std::vector<double> u(m.position[0].size(), 0.0), v(m.position[0].size(), 0.0);
   double step = 0.05, damping = 0.1;

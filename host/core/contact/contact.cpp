@@ -69,7 +69,7 @@ struct Search {
       std::memcpy(t.segment + at, &segment, sizeof segment);
     }
     for (int k = 0; k < size; ++k) t.node[count + k] = group.first + k;
-    if (!(least(nearest) >= ContactList::least_distance)) send_out(t, count);
+    if (!(least(nearest) >= least_distance)) send_out(t, count);
     const int valid = std::min(size, t.nodes_end - group.first);
     if (valid == size && largest(farthest) <= t.cutoff) return count + size;
     int end = count;
@@ -126,22 +126,18 @@ struct Search {
         t.direction_x[k] = t.along_y[segment] * inverse_length;
         t.direction_y[k] = -t.along_x[segment] * inverse_length;
       }
-      t.distance[k] = std::max(t.distance[k], ContactList::least_distance);
+      t.distance[k] = std::max(t.distance[k], least_distance);
     }
   }
 };
 
 }  // namespace
 
-void ContactList::make_room(std::size_t pairs, std::size_t contacts) {
-  ranges.resize(pairs);
-  if (contacts <= node.size()) return;
-  for (auto* values : {&node, &segment}) values->resize(contacts);
-  for (auto* values : {&along, &distance, &direction_x, &direction_y}) values->resize(contacts);
+Contacts::Contacts(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain,
+                   const std::vector<double>& self_cutoffs)
+    : neighbours_(membranes, std::move(cutoffs), domain), segments_(membranes) {
+  if (!self_cutoffs.empty()) self_contacts_.emplace(membranes, self_cutoffs);
 }
-
-Contacts::Contacts(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain)
-    : neighbours_(membranes, std::move(cutoffs), domain), segments_(membranes) {}
 
 void Contacts::measure(Worker worker, const Membranes& membranes) {
   neighbours_.measure(worker, membranes);
@@ -153,8 +149,10 @@ void Contacts::refresh(Worker worker, const Membranes& membranes) { neighbours_.
 void Contacts::find(int cell, const Membranes& membranes, ContactList& list) const {
   static const auto function = Dispatch<Search, SearchTask*>::pick();
   const NeighbourList::CandidateList& candidates = neighbours_.list(cell);
-  list.make_room(candidates.pairs.size(), candidates.groups.size() * NeighbourList::group + SegmentTable::margin);
   const CellRange& own = membranes.cells[cell];
+  const bool touches_itself = self_contacts_ && self_contacts_->acts_on(own.type);
+  list.make_room(candidates.pairs.size(), candidates.groups.size() * NeighbourList::group + SegmentTable::margin +
+                                              (touches_itself ? own.count : 0));
   SearchTask task{};
   task.x = segments_.x.data(), task.y = segments_.y.data();
   task.along_x = segments_.along_x.data(), task.along_y = segments_.along_y.data();
@@ -181,6 +179,28 @@ void Contacts::find(int cell, const Membranes& membranes, ContactList& list) con
     list.ranges[p] = {before, task.count};
   }
   list.count = task.count;
+  list.within = {list.count, list.count};
+  if (touches_itself) self_contacts_->append(own, membranes, list);
+}
+
+void Contacts::measure_velocities(int cell, const Membranes& membranes, ContactList& list) const {
+  for (auto* values : {&list.normal_velocity, &list.tangential_velocity, &list.sliding_speed})
+    values->resize(list.distance.size());
+  const std::vector<double>&u = membranes.velocity[0], &v = membranes.velocity[1];
+  const std::vector<NeighbourList::Pair>& pairs = neighbours_.list(cell).pairs;
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const CellRange& other = membranes.cells[pairs[p].other];
+    for (int i = list.ranges[p].begin; i < list.ranges[p].end; ++i) {
+      const int node = list.node[i], begin = list.segment[i], end = other.next(begin);
+      const double along = list.along[i];
+      const double du = u[node] - ((1 - along) * u[begin] + along * u[end]);
+      const double dv = v[node] - ((1 - along) * v[begin] + along * v[end]);
+      const double nx = list.direction_x[i], ny = list.direction_y[i];  // from the other cell to this one
+      list.normal_velocity[i] = du * nx + dv * ny;
+      list.tangential_velocity[i] = du * ny - dv * nx;
+      list.sliding_speed[i] = std::abs(list.tangential_velocity[i]);
+    }
+  }
 }
 
 }  // namespace rouleau::core

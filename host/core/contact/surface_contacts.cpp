@@ -13,109 +13,10 @@ namespace {
 constexpr double slack = 1e-9;        // rounding
 constexpr std::size_t in_cache = 64;  // so many groups are searched at a time
 
-/// By so much an image lies beside the cell itself.
-Vec<3> moved_by(const std::array<int, 3>& shift, const Domain<3>& domain) {
-  Vec<3> move = Vec<3>::Zero();
-  for (int axis = 0; axis < 3; ++axis)
-    if (domain.periodic[axis]) move[axis] = shift[axis] * domain.period(axis);
-  return move;
-}
 /// A number of single precision that is not larger, of one that is not negative.
 float rounded_down(double value) { return static_cast<float>(value * (1 - 0x1p-23)); }
-bool usable(const Vec<3>& place) { return place.cwiseAbs().maxCoeff() < 1e9; }  // false where one is no number
 
 }  // namespace
-
-/// All triangles, sorted by the place of their middles in the periodic box.
-class SurfaceContacts::Bins {
- public:
-  struct Entry {
-    Vec<3> middle;
-    double radius;  ///< no corner lies farther from the middle
-    int cell, triangle;
-  };
-
-  /// `reach`: within which triangles are looked for.
-  Bins(const Surfaces& surfaces, double reach, const Domain<3>& domain) : domain_(domain) {
-    double largest = 0;
-    std::vector<Entry> entries;
-    for (const int cell : surfaces.known_cells()) {
-      const Nodes nodes = surfaces.nodes(cell);
-      int triangle = 0;
-      for (const auto& [i, j, k] : surfaces.type_of(cell).mesh.triangles()) {
-        const Vec<3> a = nodes[i], b = nodes[j], c = nodes[k], middle = (a + b + c) / 3;
-        const double square =
-            std::max({(a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()});
-        if (usable(middle)) {
-          entries.push_back({middle, std::sqrt(square), cell, triangle});
-          largest = std::max(largest, entries.back().radius);
-        }
-        ++triangle;
-      }
-    }
-    reach_ = reach + largest;
-    // No more bins than about eight times the triangles.
-    const int most = 1 + static_cast<int>(2 * std::cbrt(static_cast<double>(entries.size())));
-    for (int axis = 0; axis < 3; ++axis) {
-      const double length = domain.size[axis];
-      count_[axis] = std::clamp(static_cast<int>(length / std::max(1.0, reach_ / 2)), 1, most);
-      width_[axis] = length / count_[axis];
-    }
-    std::vector<int> bin(entries.size());
-    begin_.assign(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2] + 1, 0);
-    for (std::size_t e = 0; e < entries.size(); ++e) {
-      bin[e] =
-          bin_of({along(0, entries[e].middle.x()), along(1, entries[e].middle.y()), along(2, entries[e].middle.z())});
-      ++begin_[bin[e] + 1];
-    }
-    for (std::size_t b = 1; b < begin_.size(); ++b) begin_[b] += begin_[b - 1];
-    std::vector<int> next(begin_.begin(), begin_.end() - 1);
-    entries_.resize(entries.size());
-    for (std::size_t e = 0; e < entries.size(); ++e) entries_[next[bin[e]]++] = entries[e];
-  }
-
-  /// Calls function(entry) for the triangles that may lie within the reach of a box, once for each, in some order.
-  template <class Function>
-  void for_near(const Eigen::AlignedBox3d& box, Function function) const {
-    int first[3], last[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto bin = [&](double place) { return static_cast<int>(std::floor((place + 0.5) / width_[axis])); };
-      first[axis] = bin(box.min()[axis] - reach_), last[axis] = bin(box.max()[axis] + reach_);
-      if (domain_.periodic[axis]) {
-        last[axis] = std::min(last[axis], first[axis] + count_[axis] - 1);  // no bin twice
-      } else {
-        first[axis] = std::clamp(first[axis], 0, count_[axis] - 1),
-        last[axis] = std::clamp(last[axis], 0, count_[axis] - 1);
-      }
-    }
-    for (int z = first[2]; z <= last[2]; ++z) {
-      for (int y = first[1]; y <= last[1]; ++y) {
-        for (int x = first[0]; x <= last[0]; ++x) {
-          const int bin = bin_of({wrapped(0, x), wrapped(1, y), wrapped(2, z)});
-          for (int e = begin_[bin]; e < begin_[bin + 1]; ++e) function(entries_[e]);
-        }
-      }
-    }
-  }
-
- private:
-  [[nodiscard]] int wrapped(int axis, int bin) const { return (bin % count_[axis] + count_[axis]) % count_[axis]; }
-  /// The bin along an axis; of what lies beyond a wall that beside it.
-  [[nodiscard]] int along(int axis, double place) const {
-    const int bin = static_cast<int>(std::floor((place + 0.5) / width_[axis]));
-    return domain_.periodic[axis] ? wrapped(axis, bin) : std::clamp(bin, 0, count_[axis] - 1);
-  }
-  [[nodiscard]] int bin_of(const std::array<int, 3>& bin) const {
-    return (bin[2] * count_[1] + bin[1]) * count_[0] + bin[0];
-  }
-
-  const Domain<3>& domain_;
-  double reach_ = 0;
-  int count_[3];
-  double width_[3];
-  std::vector<int> begin_;  // of each bin: its first entry, and one more
-  std::vector<Entry> entries_;
-};
 
 SurfaceContacts::SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain,
                                  const std::vector<double>& self_cutoffs)
@@ -177,15 +78,15 @@ void SurfaceContacts::refresh(Worker worker, const Surfaces& surfaces) {
   for (const int cell : cells) renewed_[cell] = renew;
   if (!renew) return;
   const double skin = of_all_ ? 1e-6 : suitable_skin(surfaces);  // who looks at all looks once
-  // Every worker sorts all triangles: that is quicker than to wait for one who does.
-  double largest = cutoffs_.largest();
-  for (const auto& own : self_reach_) largest = std::max(largest, own ? own->cutoff() : 0);
-  const Bins bins(surfaces, largest + 2 * skin, domain_);
+  // Every worker sorts all cells: that is quicker than to wait for one who does.
+  const std::vector<BoundingBox<3>> boxes = boxes_of_known<3>(surfaces);
+  const CellGrid<3> grid(boxes, cutoffs_.largest() + 2 * skin, domain_);
+  std::vector<int> near;
   for (const int cell : cells) {
+    lists_[cell] = {};
     if (of_all_ || surfaces.owns(cell)) {
-      list_candidates(cell, surfaces, bins, skin);
-    } else {
-      lists_[cell] = {};
+      grid.find(cell, near);
+      list_candidates(cell, surfaces, near, boxes, skin);
     }
     watch_.remember(cell, surfaces, skin);
   }
@@ -200,84 +101,67 @@ void SurfaceContacts::forget(const Surfaces& surfaces, std::span<const Range> no
 /// Images of other cells' triangles, and a cell's own, that may lie within the reach of some node of the cell.
 struct SurfaceContacts::Neighbours {
   struct Triangle {
-    int other;
-    std::array<int, 3> shift;
     int triangle;
     Vec<3> middle;  ///< of the image
     double radius;  ///< no corner lies farther from it
     double around;  ///< reach plus that
-    [[nodiscard]] auto order() const { return std::tie(other, shift, triangle); }
   };
   /// Triangles, or patches of them, [begin, end), and a box that holds all places that one of them is near.
   struct Part {
     std::size_t begin, end;
     Eigen::AlignedBox3d reached;
-    void include(const Triangle& triangle) {
-      ++end;
-      reached.extend(triangle.middle - Vec<3>::Constant(triangle.around));
-      reached.extend(triangle.middle + Vec<3>::Constant(triangle.around));
-    }
   };
   /// The patches of one image of a cell.
   struct Image {
     int other;
-    std::array<int, 3> shift;
+    ImageShift shift;
+    bool within;  ///< the cell's own surface
     Part part;
     std::vector<Part> near{};  ///< those of its patches that the chosen place is near
-    /// Whether it is the cell's own surface.
-    [[nodiscard]] bool within(int cell) const { return other == cell && shift == std::array<int, 3>{}; }
   };
-  std::vector<Triangle> triangles;  // sorted
-  std::vector<Part> patches;        // of triangles that follow each other, which lie side by side in most meshes
-  std::vector<Image> images;
+  std::vector<Triangle> triangles;
+  std::vector<Part> patches;  // of triangles that follow each other, which lie side by side in most meshes
+  std::vector<Image> images;  // by cell, then by shift
 
-  Neighbours(int cell, const Eigen::AlignedBox3d& box, const Surfaces& surfaces, const Bins& bins,
+  Neighbours(int cell, const std::vector<int>& near, const std::vector<BoundingBox<3>>& boxes, const Surfaces& surfaces,
              const SurfaceContacts& contacts, double skin) {
-    const Domain<3>& domain = contacts.domain_;
-    bins.for_near(box, [&](const Bins::Entry& entry) {
-      if (const double within = contacts.cutoff(surfaces, cell, cell, true); entry.cell == cell && within > 0)
-        triangles.push_back({cell, {}, entry.triangle, entry.middle, entry.radius, within + 2 * skin + entry.radius});
-      const double cutoff = contacts.cutoff(surfaces, cell, entry.cell, false);
-      if (!(cutoff > 0)) return;
-      const double around = cutoff + 2 * skin + entry.radius;
-      // All images that come so near: in a narrow box more than the nearest one.
-      std::array<int, 3> first{}, last{};
-      for (int axis = 0; axis < 3; ++axis) {
-        const double low = box.min()[axis] - around - entry.middle[axis],
-                     high = box.max()[axis] + around - entry.middle[axis];
-        if (domain.periodic[axis]) {
-          first[axis] = static_cast<int>(std::ceil(low / domain.period(axis)));
-          last[axis] = static_cast<int>(std::floor(high / domain.period(axis)));
-        } else if (low > 0 || high < 0) {
-          return;
-        }
-      }
-      std::array<int, 3> shift{};
-      for (shift[2] = first[2]; shift[2] <= last[2]; ++shift[2]) {
-        for (shift[1] = first[1]; shift[1] <= last[1]; ++shift[1]) {
-          for (shift[0] = first[0]; shift[0] <= last[0]; ++shift[0]) {
-            if (entry.cell == cell && shift == std::array<int, 3>{}) continue;
-            triangles.push_back(
-                {entry.cell, shift, entry.triangle, entry.middle + moved_by(shift, domain), entry.radius, around});
-          }
-        }
-      }
+    for (const int other : near) {
+      const double reach = contacts.cutoff(surfaces, cell, other, false) + 2 * skin + slack;
+      for_each_image(boxes[cell], boxes[other], reach, contacts.domain_, [&](ImageShift shift) {
+        const bool within = other == cell && shift == ImageShift{};
+        const double cutoff = contacts.cutoff(surfaces, cell, other, within);
+        if (cutoff > 0) add(boxes[cell], surfaces, {other, shift, within, {}}, cutoff + 2 * skin, contacts.domain_);
+      });
+    }
+    std::sort(images.begin(), images.end(), [](const Image& a, const Image& b) {
+      return std::tie(a.other, a.shift) < std::tie(b.other, b.shift);
     });
-    std::sort(triangles.begin(), triangles.end(), [](const auto& a, const auto& b) { return a.order() < b.order(); });
+  }
+
+  /// Those triangles of an image that lie within the reach of a box.
+  void add(const BoundingBox<3>& box, const Surfaces& surfaces, Image image, double reach, const Domain<3>& domain) {
     constexpr std::size_t patch_size = 16;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      const Triangle& triangle = triangles[t];
-      const bool begins =
-          images.empty() || images.back().other != triangle.other || images.back().shift != triangle.shift;
-      if (begins) images.push_back({triangle.other, triangle.shift, {patches.size(), patches.size(), {}}});
-      Image& image = images.back();
-      if (begins || patches.back().end - patches.back().begin == patch_size) {
-        patches.push_back({t, t, {}});
+    const Vec<3> least(box.least.data()), most(box.most.data()), moved = moved_by(image.shift, domain);
+    const Nodes nodes = surfaces.nodes(image.other);
+    image.part = {patches.size(), patches.size(), {}};
+    int number = 0;
+    for (const auto& [i, j, k] : surfaces.type_of(image.other).mesh.triangles()) {
+      const Vec<3> a = nodes[i], b = nodes[j], c = nodes[k], center = (a + b + c) / 3, middle = center + moved;
+      const double radius = std::sqrt(
+          std::max({(a - center).squaredNorm(), (b - center).squaredNorm(), (c - center).squaredNorm()}));
+      const Vec<3> around = Vec<3>::Constant(reach + radius);
+      const int triangle = number++;
+      if (!Eigen::AlignedBox3d(least - around, most + around).contains(middle)) continue;
+      if (image.part.end == image.part.begin || patches.back().end - patches.back().begin == patch_size) {
+        patches.push_back({triangles.size(), triangles.size(), {}});
         ++image.part.end;
       }
-      patches.back().include(triangle);
+      triangles.push_back({triangle, middle, radius, around[0]});
+      ++patches.back().end;
+      patches.back().reached.extend(Eigen::AlignedBox3d(middle - around, middle + around));
       image.part.reached.extend(patches.back().reached);
     }
+    if (image.part.end > image.part.begin) images.push_back(std::move(image));
   }
 
   /// Chooses a place that for_near() is about.
@@ -304,34 +188,24 @@ struct SurfaceContacts::Neighbours {
   }
 };
 
-void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const Bins& bins, double skin) {
+void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const std::vector<int>& near,
+                                      const std::vector<BoundingBox<3>>& boxes, double skin) {
   CandidateList& list = lists_[cell];
-  list.images.clear();
-  list.groups.clear();
-  list.candidates.clear();
   const CellRange& own = surfaces.cells[cell];
-  const auto place_of = [&](int node) {
-    return Vec<3>(surfaces.position[0][node], surfaces.position[1][node], surfaces.position[2][node]);
-  };
-  const auto box_of = [&](int first, int end) {
-    Eigen::AlignedBox3d box;
-    for (int node = first; node < end; ++node)
-      if (usable(place_of(node))) box.extend(place_of(node));
-    return box;
-  };
-  const Eigen::AlignedBox3d box = box_of(own.first, own.end());
-  if (box.isEmpty()) return;
-  Neighbours neighbours(cell, box, surfaces, bins, *this, skin);
+  const auto place_of = [&](int node) { return vector_at<3>(surfaces.position, node); };
+  Neighbours neighbours(cell, near, boxes, surfaces, *this, skin);
   for (const Neighbours::Image& image : neighbours.images)
-    list.images.push_back(
-        {image.other, image.shift, image.within(cell), 0, nullptr, moved_by(image.shift, domain_), 0, 0});
+    list.images.push_back({image.other, image.shift, image.within, 0, nullptr, moved_by(image.shift, domain_), 0, 0});
   std::vector<Candidate>& fresh = list.fresh;
   for (int node = own.first; node < own.end(); ++node) {
     // Nodes that follow each other lie side by side in most meshes.
     constexpr int together = 16;
-    if ((node - own.first) % together == 0) neighbours.choose(box_of(node, std::min(node + together, own.end())));
+    if ((node - own.first) % together == 0) {
+      Eigen::AlignedBox3d box;
+      for (int i = node; i < std::min(node + together, own.end()); ++i) box.extend(place_of(i));
+      neighbours.choose(box);
+    }
     const Vec<3> place = place_of(node);
-    if (!usable(place)) continue;
     for (std::size_t i = 0; i < neighbours.images.size(); ++i) {
       const Neighbours::Image& image = neighbours.images[i];
       if (image.near.empty()) continue;
@@ -400,9 +274,7 @@ void SurfaceContacts::look_at_next(const Surfaces& surfaces, CandidateList& list
     const Group& group = list.groups[search.group];
     const Image& image = list.images[group.image];
     const auto candidates = list.next(search);
-    const Vec<3> place =
-        Vec<3>(surfaces.position[0][group.node], surfaces.position[1][group.node], surfaces.position[2][group.node]) -
-        image.moved;
+    const Vec<3> place = vector_at<3>(surfaces.position, group.node) - image.moved;
     const int last = static_cast<int>(candidates.size()) - 1;
     for (int k = 0; k < at_once; ++k) {
       const std::array<int, 3>& corners = image.triangles[candidates[std::min(k, last)].triangle];
@@ -479,13 +351,13 @@ SurfaceContact SurfaceContacts::contact(const Search& search, const CandidateLis
   const double root = std::sqrt(search.square);
   SurfaceContact contact{group.node,
                          image.other,
-                         {image.shift[0], image.shift[1], image.shift[2]},
+                         image.shift,
                          image.within,
                          {image.first_node + i, image.first_node + j, image.first_node + k},
                          search.weight,
-                         std::max(root, SurfaceContact::least_distance),
+                         std::max(root, least_distance),
                          {}};
-  if (root > SurfaceContact::least_distance) {
+  if (root > least_distance) {
     contact.direction = search.away / root;
   } else {
     const Nodes nodes = surfaces.nodes(image.other);

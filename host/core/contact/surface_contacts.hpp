@@ -10,10 +10,12 @@
 
 #include "base/worker.hpp"
 #include "closest_points.hpp"
+#include "contact_law.hpp"
 #include "core/domain/domain.hpp"
 #include "core/domain/images.hpp"
 #include "core/membrane/displacement_watch.hpp"
 #include "core/surface/surfaces.hpp"
+#include "cell_grid.hpp"
 #include "neighbour_list.hpp"
 #include "self_reach.hpp"
 
@@ -29,9 +31,6 @@ struct SurfaceContact {
   std::array<double, 3> weight;
   double distance;   ///< |X - P|, at least least_distance
   Vec<3> direction;  ///< (X - P) / |X - P|; the triangle's outward normal where X = P
-
-  /// Potentials are promised a positive distance.
-  static constexpr double least_distance = 1e-12;
 };
 
 /// Exact closest points within the cutoffs, one for each node and each image of another cell, and one on those parts of its
@@ -81,7 +80,7 @@ class SurfaceContacts {
   /// Of a cell, from which the nodes have candidates.
   struct Image {
     int other;
-    std::array<int, 3> shift;
+    ImageShift shift;
     bool within;  ///< the cell's own surface
     // For find().
     int first_node;                       ///< of the other cell
@@ -115,7 +114,6 @@ class SurfaceContacts {
     /// What is to be looked at next.
     std::span<Candidate> next(const Search& search);
   };
-  class Bins;
   struct Neighbours;
 
   static constexpr int none = std::numeric_limits<int>::max();
@@ -123,7 +121,9 @@ class SurfaceContacts {
   static void sort_in(CandidateList& list, const Search& search);
   [[nodiscard]] double travelled(int cell, int other) const;
   [[nodiscard]] double cutoff(const Surfaces& surfaces, int cell, int other, bool within) const;
-  void list_candidates(int cell, const Surfaces& surfaces, const Bins& bins, double skin);
+  /// `near`: cells that may be near.
+  void list_candidates(int cell, const Surfaces& surfaces, const std::vector<int>& near,
+                       const std::vector<BoundingBox<3>>& boxes, double skin);
   void look_at_next(const Surfaces& surfaces, CandidateList& list) const;
   static SurfaceContact contact(const Search& search, const CandidateList& list, const Surfaces& surfaces);
 

@@ -10,8 +10,7 @@ namespace rouleau::core {
 
 std::optional<SurfaceCrossing> find_crossing(const Surfaces& surfaces, const Domain<3>& domain) {
   constexpr double rounding = 1e-6;
-  std::vector<BoundingBox<3>> boxes(surfaces.cells.size(), BoundingBox<3>{{NAN, NAN, NAN}, {NAN, NAN, NAN}});
-  for (const int cell : surfaces.known_cells()) boxes[cell] = box_of<3>(surfaces, cell);
+  const std::vector<BoundingBox<3>> boxes = boxes_of_known<3>(surfaces);
   const CellGrid<3> grid(boxes, 0, domain);
   SurfacePatches patches(surfaces, domain);
   std::vector<std::vector<Vec<3>>> normals(surfaces.cells.size());  // of nodes; made where they are wanted
@@ -37,8 +36,9 @@ std::optional<SurfaceCrossing> find_crossing(const Surfaces& surfaces, const Dom
     grid.find(cell, near);
     for (const int other : near) {
       // What lies inside another cell lies in its box.
-      for_each_image(boxes[cell], boxes[other], 0, domain, [&](ImageShift shift, const Vec<3>& moved) {
+      for_each_image(boxes[cell], boxes[other], 0, domain, [&](ImageShift shift) {
         if (other == cell && shift == ImageShift{}) return;
+        const Vec<3> moved = moved_by(shift, domain);
         const Eigen::AlignedBox3d box(Vec<3>(boxes[other].least.data()), Vec<3>(boxes[other].most.data()));
         for (int node = surfaces.cells[cell].first; node < surfaces.cells[cell].end(); ++node) {
           const Vec<3> place =

@@ -72,8 +72,9 @@ double SurfacePatches::gap(int cell, std::span<const int> others, const std::vec
   const auto box = [&](int c) { return Box(Vec<3>(boxes[c].least.data()), Vec<3>(boxes[c].most.data())); };
   for (const int other : others) {
     if (!surfaces_.knows(other)) continue;
-    for_each_image(boxes[cell], boxes[other], most + 1e-6, domain_, [&](ImageShift shift, const Vec<3>& moved) {
+    for_each_image(boxes[cell], boxes[other], most + 1e-6, domain_, [&](ImageShift shift) {
       if (other == cell && shift == ImageShift{}) return;
+      const Vec<3> moved = moved_by(shift, domain_);
       images.push_back({box(cell).squaredExteriorDistance(box(other).translated(moved)), other, moved, -moved});
     });
   }
@@ -86,7 +87,7 @@ double SurfacePatches::gap(int cell, std::span<const int> others, const std::vec
     lower(square, cell, image.other, image.moved);
     lower(square, image.other, cell, image.moved_back);
   }
-  return square < none ? std::max(std::sqrt(square), SurfaceContact::least_distance)
+  return square < none ? std::max(std::sqrt(square), least_distance)
                        : std::numeric_limits<double>::infinity();
 }
 

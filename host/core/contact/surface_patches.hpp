@@ -14,28 +14,6 @@
 
 namespace rouleau::core {
 
-/// Calls visit(ImageShift, moved) for each image of box `b`, moved by whole periods, that comes within `reach` of box `a`.
-template <class Visit>
-void for_each_image(const BoundingBox<3>& a, const BoundingBox<3>& b, double reach, const Domain<3>& domain,
-                    Visit visit) {
-  std::array<int, 3> first{}, last{};
-  for (int k = 0; k < 3; ++k) {
-    const double low = a.least[k] - b.most[k] - reach, high = a.most[k] - b.least[k] + reach;
-    if (domain.periodic[k]) {
-      first[k] = static_cast<int>(std::ceil(low / domain.period(k)));
-      last[k] = static_cast<int>(std::floor(high / domain.period(k)));
-    } else if (low > 0 || high < 0) {
-      return;
-    }
-  }
-  for (int z = first[2]; z <= last[2]; ++z) {
-    for (int y = first[1]; y <= last[1]; ++y) {
-      for (int x = first[0]; x <= last[0]; ++x)
-        visit(ImageShift{x, y, z}, Vec<3>(x * domain.period(0), y * domain.period(1), z * domain.period(2)));
-    }
-  }
-}
-
 /// Surfaces in patches, of nodes and of triangles that follow each other and so lie side by side in most meshes, with a
 /// box around each: only where boxes come nearer than what has been found are the points themselves looked at.
 /// Distances are those of SurfaceContacts, to the bit.

@@ -3,182 +3,124 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "contact.hpp"
-#include "distance_law.hpp"
+#include "core/domain/exact_sum.hpp"
 
 namespace rouleau::core {
 
-namespace {
+template <int D>
+typename Wall<D>::Nearest Wall<D>::operator()(const Vec<D>& at) const {
+  if (axis > 0) return {inward * (at[axis] - place), inward * Vec<D>::Unit(axis)};
+  Vec<D> outward = at - middle;
+  outward[0] = 0;
+  const double radius = outward.norm();
+  if (!(radius > 0)) return {place, Vec<D>::Zero()};
+  return {place - radius, -outward / radius};
+}
 
-int wall_of(double outward) { return outward > 0 ? 0 : 1; }
-
-}  // namespace
-
-WallContacts::WallContacts(Membranes& membranes, std::vector<WallInteraction> interactions, const Domain<2>& domain)
-    : interactions_(std::move(interactions)),
-      lower_(-0.5),
-      upper_(domain.size[1] - 0.5),
-      contacts_(membranes.cells.size()) {
-  if (!domain.walled(1)) throw std::invalid_argument("a potential between cells and walls needs walls along y");
-  for (std::size_t k = 0; k < interactions_.size(); ++k) {
-    const Potential& potential = interactions_[k].potential;
+template <int D>
+WallContacts<D>::WallContacts(Cells& cells, const std::vector<WallInteraction>& interactions, const Domain<D>& domain,
+                              double tube_radius) {
+  Vec<D> middle;
+  for (int axis = 0; axis < D; ++axis) middle[axis] = (domain.size[axis] - 1) / 2.0;
+  if (tube_radius > 0) walls_.push_back({0, tube_radius, 0, middle});
+  for (int axis = 1; axis < D; ++axis) {
+    if (!domain.walled(axis) || tube_radius > 0) continue;
+    walls_.push_back({axis, -0.5, 1, middle});
+    walls_.push_back({axis, domain.size[axis] - 0.5, -1, middle});
+  }
+  if (walls_.empty()) throw std::invalid_argument("a potential between cells and walls needs walls");
+  for (const auto& [type, potential] : interactions) {
     // Friction would be part of the walls' stress and power.
     if (reads_sliding(potential))
       throw std::invalid_argument("a potential with walls does not read how surfaces slide: " + potential.id);
-    traits_.push_back({cutoff_of(potential), potential.reads("normal_velocity"), potential.writes("energy")});
-    variables_.push_back(keep_state(potential, k, membranes.wall_contacts, membranes.cells.size()));
+    laws_.push_back({type, ContactLaw(potential, laws_.size(), cells.wall_contacts, cells.cells.size())});
+    remembers_ = remembers_ || laws_.back().law.remembers();
   }
 }
 
-void WallContacts::run(Worker worker, Membranes& membranes) {
-  const CellNumbers cells = membranes.own_cells(worker);
-  double* force = membranes.force[1].data();
-  for (const int cell : cells) {
-    Contacts& contacts = contacts_.of(cells.first_place());
-    const CellRange& range = membranes.cells[cell];
-    const double* weight = membranes.type_of(range).rest_weight.data();
-    for (std::size_t k = 0; k < interactions_.size(); ++k) {
-      if (interactions_[k].type != range.type) continue;
-      measure(k, cell, membranes, Wanted::step, contacts);
-      if (!variables_[k].empty()) remember(k, cell, membranes, contacts);
-      for (int i = 0; i < contacts.count; ++i) {
-        const int node = contacts.node[i];
-        force[node] += weight[node - range.first] * contacts.law[i] * contacts.outward[i];
-      }
-    }
-  }
-}
-
-void WallContacts::find(int cell, double cutoff, const Membranes& membranes, Contacts& contacts) const {
-  contacts.count = 0;
-  const CellRange& range = membranes.cells[cell];
-  const double* y = membranes.position[1].data();
-  double lowest = y[range.first], highest = lowest;
+template <int D>
+void WallContacts<D>::find(const ContactLaw& law, int cell, int wall, const Cells& cells, Contacts& contacts) const {
+  contacts.node.clear();
+  contacts.away.clear();
+  contacts.values.clear();
+  const CellRange& range = cells.cells[cell];
   for (int i = range.first; i < range.end(); ++i) {
-    lowest = y[i] < lowest ? y[i] : lowest;
-    highest = y[i] > highest ? y[i] : highest;
-  }
-  if (lowest - lower_ > cutoff && upper_ - highest > cutoff) return;
-
-  const auto most = 2 * static_cast<std::size_t>(range.count);
-  if (contacts.node.size() < most) {
-    contacts.node.resize(most);
-    for (auto* values : {&contacts.distance, &contacts.outward, &contacts.normal_velocity, &contacts.law})
-      values->resize(most);
-  }
-  const auto add = [&](int node, double distance, double outward) {
-    if (!(distance <= cutoff)) return;
-    const int at = contacts.count++;
-    contacts.node[at] = node;
-    contacts.distance[at] = std::max(distance, ContactList::least_distance);
-    contacts.outward[at] = outward;
-    contacts.normal_velocity[at] = outward * membranes.velocity[1][node];  // the wall moves along itself
-  };
-  for (int i = range.first; i < range.end(); ++i) {
-    add(i, y[i] - lower_, 1);
-    add(i, upper_ - y[i], -1);
+    const auto [distance, away] = walls_[wall](vector_at<D>(cells.position, i));
+    if (!(distance <= law.cutoff())) continue;
+    contacts.node.push_back(i);
+    contacts.away.push_back(away);
+    contacts.values.distance.push_back(std::max(distance, least_distance));
+    if (law.remembers()) contacts.values.key.push_back({i - range.first, wall, {}});
+    if (law.reads_normal_velocity())  // the wall moves along itself
+      contacts.values.normal_velocity.push_back(away.dot(vector_at<D>(cells.velocity, i)));
   }
 }
 
-void WallContacts::measure(std::size_t interaction, int cell, const Membranes& membranes, Wanted wanted,
-                           Contacts& contacts) const {
-  find(cell, traits_[interaction].cutoff, membranes, contacts);
-  if (contacts.count == 0) return;
-  const std::vector<std::size_t>& variables = variables_[interaction];
-  const auto count = static_cast<std::size_t>(contacts.count);
-  std::vector<const double*> state;
-  std::vector<double*> new_state;
-  if (!variables.empty()) contacts.state.resize(count * variables.size());
-  for (std::size_t v = 0; v < variables.size(); ++v) {
-    double* values = contacts.state.data() + v * count;
-    std::fill(values, values + count, membranes.wall_contacts.variables[variables[v]].initial);
-    for (const ContactState& known : membranes.wall_contacts.of_cell[cell]) {
-      if (known.variable != variables[v]) continue;
-      for (std::size_t i = 0; i < count; ++i) {
-        if (wall_of(contacts.outward[i]) != known.other) continue;
-        values[i] = known.value[contacts.node[i] - membranes.cells[cell].first];
-      }
-    }
-    state.push_back(values);
-    new_state.push_back(values);
-  }
-  rouleau_interaction_block block{};
-  block.struct_size = sizeof block;
-  block.count = static_cast<std::uint32_t>(contacts.count);
-  block.time_step = wanted == Wanted::step || variables.empty() ? 1 : 0;
-  block.distance = contacts.distance.data();
-  if (traits_[interaction].normal_velocity) block.normal_velocity = contacts.normal_velocity.data();
-  (wanted == Wanted::energy ? block.energy : block.force) = contacts.law.data();
-  if (!variables.empty()) block.state = state.data();
-  if (!variables.empty() && wanted == Wanted::step) block.new_state = new_state.data();
-  interactions_[interaction].potential.compute(&block);
-}
-
-void WallContacts::remember(std::size_t interaction, int cell, Membranes& membranes, Contacts& contacts) const {
-  const CellRange& range = membranes.cells[cell];
-  std::vector<ContactState>& states = membranes.wall_contacts.of_cell[cell];
-  for (std::size_t v = 0; v < variables_[interaction].size(); ++v) {
-    const std::size_t variable = variables_[interaction][v];
-    const double* values = contacts.state.data() + v * static_cast<std::size_t>(contacts.count);
-    for (const int wall : {0, 1}) {
-      contacts.fresh.assign(static_cast<std::size_t>(range.count), membranes.wall_contacts.variables[variable].initial);
-      bool touches = false;
-      for (int i = 0; i < contacts.count; ++i) {
-        if (wall_of(contacts.outward[i]) != wall) continue;
-        contacts.fresh[contacts.node[i] - range.first] = values[i];
-        touches = true;
-      }
-      auto found = std::find_if(states.begin(), states.end(), [&](const ContactState& state) {
-        return state.variable == variable && state.other == wall;
-      });
-      if (touches) {
-        if (found == states.end()) found = states.insert(found, {variable, wall, {}, {}});
-        found->value.swap(contacts.fresh);
-      } else if (found != states.end()) {
-        states.erase(found);
-      }
+template <int D>
+template <class Act>
+void WallContacts<D>::for_each(int cell, const Cells& cells, bool energy, std::vector<ContactState>* next,
+                               Contacts& contacts, Act act) const {
+  const CellRange& range = cells.cells[cell];
+  const std::vector<double>& weight = cells.types[range.type]->node_measure();
+  for (const auto& [type, law] : laws_) {
+    if (type != range.type || (energy && !law.has_energy())) continue;
+    for (int wall = 0; wall < static_cast<int>(walls_.size()); ++wall) {
+      find(law, cell, wall, cells, contacts);
+      const auto count = static_cast<int>(contacts.node.size());
+      if (count == 0) continue;
+      contacts.law.resize(contacts.node.size());
+      law.evaluate(range.count, states_of(cells.wall_contacts, cell), contacts.values, {0, count}, energy, next,
+                   contacts.law.data());
+      for (int i = 0; i < count; ++i) act(contacts.node[i], weight[contacts.node[i] - range.first], i);
     }
   }
 }
 
-double WallContacts::energy(const Membranes& membranes, const Ranks<2>& ranks) const {
+template <int D>
+void WallContacts<D>::run(Worker worker, Cells& cells) const {
+  Contacts contacts;
+  std::vector<ContactState> next;
+  for (const int cell : cells.own_cells(worker)) {
+    next.clear();
+    for_each(cell, cells, false, &next, contacts, [&](int node, double weight, int i) {
+      for (int k = 0; k < D; ++k) cells.force[k][node] += weight * contacts.law[i] * contacts.away[i][k];
+    });
+    if (remembers_) cells.wall_contacts.of_cell[cell].swap(next);
+  }
+}
+
+/// Adds value(contacts, i), times the node's measure at rest, over all contacts of all ranks' cells.
+template <int D>
+template <class Value>
+double WallContacts<D>::sum_over(const Cells& cells, bool energy, const Ranks<D>& ranks, Value value) const {
   std::vector<ExactSum> sum(1);
   Contacts contacts;
-  for (const int cell : membranes.own_cells()) {
-    const CellRange& range = membranes.cells[cell];
-    const double* weight = membranes.type_of(range).rest_weight.data();
-    for (std::size_t k = 0; k < interactions_.size(); ++k) {
-      if (interactions_[k].type != range.type || !traits_[k].energy) continue;
-      measure(k, cell, membranes, Wanted::energy, contacts);
-      for (int i = 0; i < contacts.count; ++i)
-        sum.front().add(weight[contacts.node[i] - range.first] * contacts.law[i]);
-    }
-  }
+  for (const int cell : cells.own_cells())
+    for_each(cell, cells, energy, nullptr, contacts,
+             [&](int, double weight, int i) { sum.front().add(weight * value(contacts, i)); });
   add_up(ranks, sum);
   return sum.front().value();
 }
 
-double WallContacts::net_force(const Membranes& membranes, const Ranks<2>& ranks) const {
-  std::vector<ExactSum> sum(1);
-  Contacts contacts;
-  for (const int cell : membranes.own_cells()) {
-    const CellRange& range = membranes.cells[cell];
-    const double* weight = membranes.type_of(range).rest_weight.data();
-    for (std::size_t k = 0; k < interactions_.size(); ++k) {
-      if (interactions_[k].type != range.type) continue;
-      measure(k, cell, membranes, Wanted::force, contacts);
-      for (int i = 0; i < contacts.count; ++i)
-        sum.front().add(weight[contacts.node[i] - range.first] * contacts.law[i] * contacts.outward[i]);
-    }
-  }
-  add_up(ranks, sum);
-  return sum.front().value();
+template <int D>
+double WallContacts<D>::energy(const Cells& cells, const Ranks<D>& ranks) const {
+  return sum_over(cells, true, ranks, [](const Contacts& contacts, int i) { return contacts.law[i]; });
 }
 
-std::string WallContacts::without_energy() const {
-  for (std::size_t k = 0; k < interactions_.size(); ++k)
-    if (!traits_[k].energy) return interactions_[k].potential.id;
+template <int D>
+double WallContacts<D>::net_force(const Cells& cells, const Ranks<D>& ranks, int axis) const {
+  return sum_over(cells, false, ranks,
+                  [axis](const Contacts& contacts, int i) { return contacts.law[i] * contacts.away[i][axis]; });
+}
+
+template <int D>
+std::string WallContacts<D>::without_energy() const {
+  for (const auto& [type, law] : laws_)
+    if (!law.has_energy()) return law.potential().id;
   return {};
 }
+
+template class WallContacts<2>;
+template class WallContacts<3>;
 
 }  // namespace rouleau::core

@@ -2,69 +2,86 @@
 #pragma once
 
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "base/worker.hpp"
+#include "contact_law.hpp"
 #include "core/domain/domain.hpp"
 #include "core/domain/ranks.hpp"
+#include "core/domain/vec.hpp"
 #include "core/membrane/membranes.hpp"
-#include "core/model/model.hpp"
+#include "core/surface/surfaces.hpp"
 
 namespace rouleau::core {
 
-/// A potential between the cells of a type and both walls.
-struct WallInteraction {
-  int type;
-  Potential potential;
+/// A wall as a potential sees it: how far a place is from it, and which way leads away from it.
+template <int D>
+struct Wall {
+  int axis;       ///< that a plane lies across; 0: a tube along x
+  double place;   ///< of a plane along its axis; of a tube: its radius
+  double inward;  ///< of a plane: 1 where the fluid lies above it, -1 below
+  Vec<D> middle;  ///< of a tube
+
+  struct Nearest {
+    double distance;  ///< negative beyond the wall
+    Vec<D> away;      ///< of length 1; 0 in the middle of a tube
+  };
+  [[nodiscard]] Nearest operator()(const Vec<D>& at) const;
 };
 
-/// Node i with rest weight Lb at distance r of a wall: energy Lb phi(r), force Lb f(r) away from the wall. At a contact
-/// of two cells the weight is Lb/2, for each of the two has nodes; a wall has none, so that a membrane's own count whole
-/// (docs: physics, interaction). The wall takes the reaction, normal to itself.
+/// Node i with rest measure w (in two dimensions a length, in three an area) at distance r of a wall: energy w phi(r),
+/// force w f(r) away from the wall. At a contact of two cells the weight is w/2, for each of the two has nodes; a wall has
+/// none, so that a membrane's own count whole (docs: physics, interaction). Walls lie across the axes that are not
+/// periodic, or are a tube along x around the middle of the domain. They take the reaction, normal to themselves.
+template <int D>
 class WallContacts {
  public:
-  /// Adds what potentials remember to `membranes.wall_contacts`, as far as it is not there from an earlier stage. Throws
-  /// std::invalid_argument without walls, and for potentials that read how surfaces slide.
-  WallContacts(Membranes& membranes, std::vector<WallInteraction> interactions, const Domain<2>& domain);
+  using Cells = std::conditional_t<D == 2, Membranes, Surfaces>;
 
-  /// Pass over cells: adds to force_y, and advances the state of the contacts by one step. A cell that no wall is near of costs a look at how high its nodes lie.
-  void run(Worker worker, Membranes& membranes);
+  /// Adds what potentials remember to `cells.wall_contacts`, as far as it is not there from an earlier stage. tube_radius:
+  /// in place of the domain's walls; 0: none. Throws std::invalid_argument without walls, and for potentials that read
+  /// how surfaces slide.
+  WallContacts(Cells& cells, const std::vector<WallInteraction>& interactions, const Domain<D>& domain,
+               double tube_radius = 0);
+
+  /// Pass over cells: adds to the forces, and advances the state of the contacts by one step.
+  void run(Worker worker, Cells& cells) const;
 
   /// Energy at the present positions, of all ranks' cells. Not a pass.
-  [[nodiscard]] double energy(const Membranes& membranes, const Ranks<2>& ranks = {}) const;
-  /// What both walls together do to all cells, along y: along x they do nothing. Not a pass.
-  [[nodiscard]] double net_force(const Membranes& membranes, const Ranks<2>& ranks = {}) const;
+  [[nodiscard]] double energy(const Cells& cells, const Ranks<D>& ranks = {}) const;
+  /// What the walls together do to all cells, along an axis. Not a pass.
+  [[nodiscard]] double net_force(const Cells& cells, const Ranks<D>& ranks = {}, int axis = 1) const;
   /// A potential that acts but tells no energy; empty: none.
   [[nodiscard]] std::string without_energy() const;
 
  private:
-  /// The nodes of a cell within a cutoff of a wall, in structure of arrays; one within that of both is there twice.
+  /// Nodes of a cell within a cutoff of one wall, the direction away from it, and the potential's force or energy.
   struct Contacts {
     std::vector<int> node;
-    std::vector<double> distance;
-    std::vector<double> outward;          // 1 at the lower wall, -1 at the upper
-    std::vector<double> normal_velocity;  // d distance / dt
-    std::vector<double> law;              // force or energy of the potential
-    std::vector<double> state, fresh;     // of the contacts, all variables; of the cell's nodes
-    int count = 0;                        // arrays may be longer
+    std::vector<Vec<D>> away;
+    ContactValues values;
+    std::vector<double> law;
   };
-  /// Of one interaction, found by asking its potential once.
-  struct Traits {
-    double cutoff;
-    bool normal_velocity, energy;
-  };
-  void find(int cell, double cutoff, const Membranes& membranes, Contacts& contacts) const;
-  /// The force after one step of the state, or force or energy to look at.
-  enum class Wanted { step, force, energy };
-  /// Finds the contacts of a cell with the walls and sets their `law` to what is wanted, `state` to what it becomes.
-  void measure(std::size_t interaction, int cell, const Membranes& membranes, Wanted wanted, Contacts& contacts) const;
-  void remember(std::size_t interaction, int cell, Membranes& membranes, Contacts& contacts) const;
+  void find(const ContactLaw& law, int cell, int wall, const Cells& cells, Contacts& contacts) const;
+  /// Calls act(node, weight, i) for the contacts i of a cell with all walls by all laws that act on it, when
+  /// their force, or energy, is known. `next`: as ContactLaw has it.
+  template <class Act>
+  void for_each(int cell, const Cells& cells, bool energy, std::vector<ContactState>* next, Contacts& contacts,
+                Act act) const;
+  template <class Value>
+  double sum_over(const Cells& cells, bool energy, const Ranks<D>& ranks, Value value) const;
 
-  std::vector<WallInteraction> interactions_;
-  std::vector<Traits> traits_;
-  std::vector<std::vector<std::size_t>> variables_;  // of the interactions, in ContactMemory::variables
-  double lower_, upper_;                             // where the walls are
-  WorkerScratch<Contacts> contacts_;
+  struct OfType {
+    int type;
+    ContactLaw law;
+  };
+  std::vector<OfType> laws_;
+  bool remembers_ = false;
+  std::vector<Wall<D>> walls_;
 };
+
+extern template class WallContacts<2>;
+extern template class WallContacts<3>;
 
 }  // namespace rouleau::core

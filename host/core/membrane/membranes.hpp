@@ -22,6 +22,9 @@ struct RestShape {
   std::vector<double> rest_weight;     ///< (rest_length[i - 1] + rest_length[i]) / 2: rest measure of node i
   std::vector<double> rest_curvature;  ///< turning angle over rest_weight in the shape it was created with
   double rest_area = 0, rest_perimeter = 0;
+
+  /// Of each node at rest: its share of the perimeter, as it is of the area of a surface.
+  [[nodiscard]] const std::vector<double>& node_measure() const { return rest_weight; }
 };
 
 /// Nodes counter-clockwise, at least three; `prestretch`: length as given over rest length.

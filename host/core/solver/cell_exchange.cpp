@@ -218,7 +218,7 @@ void CellExchange<D>::hand_over(Cells& cells, DisplacementWatch& viscosity,
 }
 
 template <int D>
-void CellExchange<D>::send_reactions(Interactions& interactions) const {
+void CellExchange<D>::send_reactions(Interactions<D>& interactions) const {
   for (const auto& [rank, peer] : ghosts_.peers()) {
     if (!peer.touch) continue;
     Packer message;
@@ -228,7 +228,7 @@ void CellExchange<D>::send_reactions(Interactions& interactions) const {
           if (ghosts_.owner(other) == to) message(x, count), message(y, count);
         });
       } else {
-        std::vector<SurfaceInteractions::Reaction> there;
+        std::vector<Reaction> there;
         for (const auto& reaction : interactions.reactions(c)) {
           if (ghosts_.owner(reaction.cell) == rank) there.push_back(reaction);
         }
@@ -242,7 +242,7 @@ void CellExchange<D>::send_reactions(Interactions& interactions) const {
 }
 
 template <int D>
-void CellExchange<D>::receive_reactions(const Cells& cells, Interactions& interactions) const {
+void CellExchange<D>::receive_reactions(const Cells& cells, Interactions<D>& interactions) const {
   for (const auto& [rank, peer] : ghosts_.peers()) {
     if (!peer.touch) continue;
     Unpacker message(ranks_.transport->receive(rank));

@@ -7,8 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "core/contact/interaction_forces.hpp"
-#include "core/contact/surface_interactions.hpp"
+#include "core/contact/interactions.hpp"
 #include "core/membrane/displacement_watch.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/surface/surfaces.hpp"
@@ -23,7 +22,6 @@ template <int D>
 class CellExchange {
  public:
   using Cells = std::conditional_t<D == 2, Membranes, Surfaces>;
-  using Interactions = std::conditional_t<D == 2, InteractionForces, SurfaceInteractions>;
 
   /// `ghosts`: what this rank's part in the cells is. `velocities`: ghosts' are wanted, too.
   CellExchange(GhostCells<D> ghosts, bool velocities);
@@ -33,7 +31,7 @@ class CellExchange {
   /// What messages are about.
   struct Parts {
     Cells& cells;
-    Interactions* interactions;  ///< null: none
+    Interactions<D>* interactions;  ///< null: none
     DisplacementWatch& viscosity;
     std::array<double*, D> force;  ///< what is spread: a component along each axis for every node
     Base base;
@@ -83,8 +81,8 @@ class CellExchange {
   static void send_shown(const GhostCells<D>& ghosts, Cells& cells, DisplacementWatch& viscosity, Shown shown);
   static void receive_shown(const GhostCells<D>& ghosts, Cells& cells, DisplacementWatch& viscosity, Shown shown);
   /// The reactions of potentials, to the owners of the cells that they act on.
-  void send_reactions(Interactions& interactions) const;
-  void receive_reactions(const Cells& cells, Interactions& interactions) const;
+  void send_reactions(Interactions<D>& interactions) const;
+  void receive_reactions(const Cells& cells, Interactions<D>& interactions) const;
   /// To those whose blocks they may reach.
   void send_forces(const Cells& cells, const std::array<double*, D>& force) const;
   void receive_forces(const Cells& cells, const std::array<double*, D>& force) const;

@@ -34,19 +34,17 @@ OutlineTasks<T>::OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fl
       coupling_(setup.kernel, setup.domain) {
   membranes_.largest_step.resize(membranes_.cells.size(), 0.0);
   if (setup.area_correction) membranes_.area_leakage.resize(membranes_.cells.size(), 0.0);  // earlier leakage stays
-  if (!setup.interactions.empty()) {
-    interaction_forces_ = std::make_unique<InteractionForces>(membranes_, setup.interactions, setup.domain);
+  if (!setup.interactions.empty() || !setup.self_interactions.empty()) {
+    interactions_ =
+        std::make_unique<Interactions<2>>(membranes_, setup.interactions, setup.domain, setup.self_interactions);
   }
-  if (!setup.wall_interactions.empty()) {
-    wall_contacts_ = std::make_unique<WallContacts>(membranes_, setup.wall_interactions, setup.domain);
-  }
-  if (!setup.self_interactions.empty()) {
-    self_contacts_ = std::make_unique<SelfContacts>(membranes_, setup.self_interactions);
-  }
+  if (!setup.wall_interactions.empty())
+    wall_contacts_ =
+        std::make_unique<WallContacts<2>>(membranes_, setup.wall_interactions, setup.domain, setup.tube_radius);
   coupling_.reserve(membranes_);
   if (ghosts) {
     exchange_ = std::make_unique<CellExchange<2>>(*std::move(ghosts),
-                                                  interaction_forces_ && interaction_forces_->needs_velocities());
+                                                  interactions_ && interactions_->needs_velocities());
   }
   locate(Worker{}, Whose::own);
   locate(Worker{}, Whose::others);
@@ -86,9 +84,8 @@ std::vector<double> OutlineTasks<T>::viscosity_ratios() const {
 template <class T>
 void OutlineTasks<T>::describe(StepFeatures& features) const {
   features.cells = true;
-  features.interactions = interaction_forces_ != nullptr;
+  features.interactions = interactions_ != nullptr;
   features.wall_interactions = wall_contacts_ != nullptr;
-  features.self_interactions = self_contacts_ != nullptr;
   features.slip_correction = slip_correction_ != nullptr;
   features.area_correction = setup_.area_correction;
 }
@@ -97,17 +94,15 @@ template <class T>
 void OutlineTasks<T>::run(Task task, Worker worker) {
   switch (task) {
     case Task::find_contacts:
-      return interaction_forces_->run(worker, 0, membranes_);
+      return interactions_->run(worker, 0, membranes_);
     case Task::membrane_forces:
       return membrane_forces_.run(worker, membranes_);
     case Task::wall_forces:
       return wall_contacts_->run(worker, membranes_);
-    case Task::self_forces:
-      return self_contacts_->run(worker, membranes_);
     case Task::interaction_forces:
-      return interaction_forces_->run(worker, 1, membranes_);
+      return interactions_->run(worker, 1, membranes_);
     case Task::take_reactions:
-      return interaction_forces_->run(worker, 2, membranes_);
+      return interactions_->run(worker, 2, membranes_);
     case Task::complete_forces:
       if (setup_.area_correction) core::take_out_pressures(worker, membranes_);
       if (slip_correction_) slip_correction_->complete(worker, membranes_);
@@ -150,7 +145,7 @@ void OutlineTasks<T>::run(Task task, Worker worker) {
 template <class T>
 CellExchange<2>::Parts OutlineTasks<T>::parts() {
   return {.cells = membranes_,
-          .interactions = interaction_forces_.get(),
+          .interactions = interactions_.get(),
           .viscosity = viscosity_field_.watch(),
           .force = slip_correction_ ? slip_correction_->forces_of_all()
                                     : std::array{membranes_.force[0].data(), membranes_.force[1].data()},
@@ -167,7 +162,7 @@ void OutlineTasks<T>::forget_unknown() {
   viscosity_field_.watch().forget(membranes_, nodes);
   coupling_.forget(nodes);
   if (slip_correction_) slip_correction_->forget(nodes);
-  if (interaction_forces_) interaction_forces_->forget(membranes_, nodes);
+  if (interactions_) interactions_->forget(membranes_, nodes);
 }
 
 template <class T>

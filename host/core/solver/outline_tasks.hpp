@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "cell_exchange.hpp"
+#include "core/contact/interactions.hpp"
+#include "core/contact/wall_contacts.hpp"
 #include "core/coupling/coupling.hpp"
 #include "core/coupling/slip_correction.hpp"
 #include "core/coupling/viscosity_field.hpp"
@@ -86,17 +88,16 @@ class OutlineTasks {
   [[nodiscard]] bool corrects_motion() const { return slip_correction_ || setup_.area_correction; }
   [[nodiscard]] const ViscosityField<T>& viscosity_field() const { return viscosity_field_; }
   /// Null without such interactions.
-  [[nodiscard]] const WallContacts* wall_contacts() const { return wall_contacts_.get(); }
-  /// Where the state may be observed: InteractionForces::force_across_images.
+  [[nodiscard]] const WallContacts<2>* wall_contacts() const { return wall_contacts_.get(); }
+  /// Where the state may be observed: Interactions::force_across_images.
   [[nodiscard]] double force_across_images(int cell) const {
-    return interaction_forces_ ? interaction_forces_->force_across_images(cell) : 0;
+    return interactions_ ? interactions_->force_across_images(cell) : 0;
   }
-  /// Calls function(forces) for the kinds of interactions that there are: between cells, with walls, of a cell with itself.
+  /// Calls function(forces) for the kinds of interactions that there are: between and within cells, and with walls.
   template <class Function>
   void for_each_interaction(Function function) const {
-    if (interaction_forces_) function(*interaction_forces_);
+    if (interactions_) function(*interactions_);
     if (wall_contacts_) function(*wall_contacts_);
-    if (self_contacts_) function(*self_contacts_);
   }
 
  private:
@@ -115,9 +116,8 @@ class OutlineTasks {
   std::unique_ptr<CellExchange<2>> exchange_;  ///< null without other ranks
   std::unique_ptr<SlipCorrection> slip_correction_;
   MembraneForces membrane_forces_;
-  std::unique_ptr<InteractionForces> interaction_forces_;
-  std::unique_ptr<WallContacts> wall_contacts_;
-  std::unique_ptr<SelfContacts> self_contacts_;
+  std::unique_ptr<Interactions<2>> interactions_;
+  std::unique_ptr<WallContacts<2>> wall_contacts_;
   ViscosityField<T> viscosity_field_;
   Coupling<T> coupling_;
 };

@@ -15,7 +15,7 @@ Schedule make_schedule(const StepFeatures& has) {
   };
   const bool cells = has.cells, ranks = has.ranks, corrected = has.slip_correction || has.area_correction;
   const bool ghosts = cells && ranks;
-  const bool touch = has.interactions, walls = has.wall_interactions, self = has.self_interactions;
+  const bool touch = has.interactions, walls = has.wall_interactions;
   const char* const mark = has.viscosity_contrast ? "indicator" : "activity";
   // Where a worker would wait for the others it goes on with its own cells: announce, await.
   const Meeting own_cells = ghosts ? Meeting::all : touch ? Meeting::await : Meeting::none;
@@ -23,9 +23,8 @@ Schedule make_schedule(const StepFeatures& has) {
   // The last step has left the lattice to itself; with cells a later meeting tells all workers before they take rows.
   add(has.changing_drive, Task::set_drive, "fluid", cells ? Meeting::none : Meeting::all);
   add(touch && !ghosts, Task::find_contacts, "interaction", Meeting::announce);
-  add(cells, Task::membrane_forces, "membrane", walls || self ? Meeting::none : own_cells);
-  add(walls, Task::wall_forces, "interaction", self ? Meeting::none : own_cells);
-  add(self, Task::self_forces, "interaction", own_cells);
+  add(cells, Task::membrane_forces, "membrane", walls ? Meeting::none : own_cells);
+  add(walls, Task::wall_forces, "interaction", own_cells);
   // What ranks tell each other is on its way during the task after it is sent: positions since the last step.
   add(ghosts, Task::receive_positions, "ranks", Meeting::all);
   add(ghosts, Task::locate_ghosts, "move", Meeting::none);

@@ -13,7 +13,6 @@ enum class Task {
   set_drive,           ///< one worker: walls and body force that change with time
   membrane_forces,     ///< cells: F = -dE/dX of the membrane laws
   wall_forces,         ///< cells: F = -dE/dX of the potentials between cells and walls
-  self_forces,         ///< cells: F = -dE/dX of the potentials between parts of one membrane
   receive_positions,   ///< one worker: of other ranks' nodes that this one has to know of
   locate_ghosts,       ///< cells: locate, of other ranks' cells and of those that have just become own ones
   find_contacts,       ///< cells: the closest point of other outlines to each node
@@ -58,7 +57,6 @@ struct StepFeatures {
   bool cells = false;
   bool interactions = false;
   bool wall_interactions = false;
-  bool self_interactions = false;
   bool viscosity_contrast = false;
   bool slip_correction = false;
   bool area_correction = false;

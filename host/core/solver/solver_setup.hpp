@@ -4,9 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/contact/interaction_forces.hpp"
-#include "core/contact/self_contacts.hpp"
-#include "core/contact/wall_contacts.hpp"
+#include "core/contact/contact_law.hpp"
 #include "core/coupling/kernel_kind.hpp"
 #include "core/domain/domain.hpp"
 #include "core/fluid/layers.hpp"

@@ -88,11 +88,11 @@ SurfaceTasks<T>::SurfaceTasks(const BasicSolverSetup<3>& setup, Surfaces& surfac
   for (const CellRange& cell : surfaces.cells) slight_energy_ += of_type[cell.type];
   if (!setup.interactions.empty() || !setup.self_interactions.empty()) {
     interactions_ =
-        std::make_unique<SurfaceInteractions>(surfaces_, setup.interactions, setup.domain, setup.self_interactions);
+        std::make_unique<Interactions<3>>(surfaces_, setup.interactions, setup.domain, setup.self_interactions);
   }
   if (!setup.wall_interactions.empty())
     wall_contacts_ =
-        std::make_unique<SurfaceWallContacts>(surfaces_, setup.wall_interactions, setup.domain, setup.tube_radius);
+        std::make_unique<WallContacts<3>>(surfaces_, setup.wall_interactions, setup.domain, setup.tube_radius);
   if (corrects_motion()) normals_ = std::make_unique<SurfaceNormals>(surfaces_);
   if (keeps_volumes_) surfaces_.area_leakage.resize(surfaces_.cells.size(), 0.0);  // earlier leakage stays
   coupling_.reserve(surfaces_);

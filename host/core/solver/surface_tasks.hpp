@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cell_exchange.hpp"
-#include "core/contact/surface_interactions.hpp"
-#include "core/contact/surface_wall_contacts.hpp"
+#include "core/contact/interactions.hpp"
+#include "core/contact/wall_contacts.hpp"
 #include "core/coupling/interior_field.hpp"
 #include "core/coupling/surface_coupling.hpp"
 #include "core/coupling/surface_slip.hpp"
@@ -94,8 +94,8 @@ class SurfaceTasks {
   /// Whether nodes do not move exactly as the lattice's fluid at their places does.
   [[nodiscard]] bool corrects_motion() const { return slip_ || keeps_volumes_; }
   /// Null without such interactions.
-  [[nodiscard]] const SurfaceWallContacts* wall_contacts() const { return wall_contacts_.get(); }
-  /// Where the state may be observed: InteractionForces::force_across_images.
+  [[nodiscard]] const WallContacts<3>* wall_contacts() const { return wall_contacts_.get(); }
+  /// Where the state may be observed: Interactions::force_across_images.
   [[nodiscard]] double force_across_images(int cell) const {
     return interactions_ ? interactions_->force_across_images(cell) : 0;
   }
@@ -117,8 +117,8 @@ class SurfaceTasks {
   Surfaces& surfaces_;
   Fluid<T, D3Q19>& fluid_;
   SurfaceForces forces_;
-  std::unique_ptr<SurfaceInteractions> interactions_;
-  std::unique_ptr<SurfaceWallContacts> wall_contacts_;
+  std::unique_ptr<Interactions<3>> interactions_;
+  std::unique_ptr<WallContacts<3>> wall_contacts_;
   bool keeps_volumes_;                       ///< else they are left to the coupling
   double strain_per_step_;                   ///< of the flow
   std::unique_ptr<SurfaceNormals> normals_;  ///< null: nothing is corrected

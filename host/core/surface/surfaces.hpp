@@ -27,6 +27,8 @@ struct RestSurface {
   double rest_surface_area = 0;        ///< sum of the triangles' areas at rest
 
   [[nodiscard]] Nodes nodes() const { return {x.data(), y.data(), z.data()}; }
+  /// Of each node at rest: its share of the area, as it is of the perimeter of an outline.
+  [[nodiscard]] const std::vector<double>& node_measure() const { return node_area; }
 };
 
 /// `prestretch`: lengths as given over those at rest.

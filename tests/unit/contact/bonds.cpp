@@ -1,7 +1,7 @@
 // Interactions that remember: bonds between cells form, break, stay with their cells, and balance.
 #include <catch2/catch.hpp>
 
-#include "core/contact/interaction_forces.hpp"
+#include "core/contact/interactions.hpp"
 #include "unit/cell_fixture.hpp"
 #include "unit/contact/contact_list.hpp"
 
@@ -19,20 +19,20 @@ rouleau::core::Potential bridging(double on_rate = on, double off_rate = off, do
   return potential("bridging", {sites, stiffness, bond_length, on_rate, off_rate, forward_share, thermal, cutoff});
 }
 
-InteractionForces bonds_between(Membranes& m, rouleau::core::Potential bond,
+Interactions<2> bonds_between(Membranes& m, rouleau::core::Potential bond,
                                 core::Domain<2> domain = periodic_box(10000)) {
   return {m, {{{0, 0}, std::move(bond)}}, domain};
 }
 
-void run_cleared(InteractionForces& forces, Membranes& m, int workers = 1) {
+void run_cleared(Interactions<2>& forces, Membranes& m, int workers = 1) {
   for (auto* force : {&m.force[0], &m.force[1]}) std::fill(force->begin(), force->end(), 0.0);
-  for (int phase = 0; phase < InteractionForces::phases; ++phase) {
+  for (int phase = 0; phase < Interactions<2>::phases; ++phase) {
     run_pass(workers, [&](Worker worker) { forces.run(worker, phase, m); });
   }
 }
 
 /// Bond density of every contact of a cell with its only neighbour, in the order of the list.
-std::vector<double> densities(const InteractionForces& forces, const Membranes& m, int cell) {
+std::vector<double> densities(const Interactions<2>& forces, const Membranes& m, int cell) {
   std::vector<double> values;
   const ContactList list = contact_list(forces.contacts(), m, cell);
   for (int i = 0; i < list.count; ++i) {
@@ -52,7 +52,7 @@ void move(Membranes& m, int cell, double x, double y) {
 }
 
 /// Gives the nodes bonds that depend on their distance and vanish towards the cutoff.
-void set_bonds(const InteractionForces& forces, Membranes& m) {
+void set_bonds(const Interactions<2>& forces, Membranes& m) {
   for (int cell = 0; cell < m.cell_count(); ++cell) {
     const ContactList list = contact_list(forces.contacts(), m, cell);
     for (ContactState& state : m.contacts.of_cell[static_cast<std::size_t>(cell)]) {
@@ -69,7 +69,7 @@ void set_bonds(const InteractionForces& forces, Membranes& m) {
 
 TEST_CASE("bonds at a fixed distance follow the solution of their rate equation and end at its balance") {
   Membranes m = biconcave_cells({{0, 0, 0}, {1, 18, 0.03}});
-  InteractionForces forces = bonds_between(m, bridging());
+  Interactions<2> forces = bonds_between(m, bridging());
   int done = 0;
   for (const int steps : {1, 9, 40, 2000}) {
     for (; done < steps; ++done) run_cleared(forces, m);
@@ -89,7 +89,7 @@ TEST_CASE("bonds at a fixed distance follow the solution of their rate equation 
 
 TEST_CASE("unstretched bonds in balance fill on/(on + off) of the sites") {
   Membranes m = biconcave_cells({{0, 0, 0}, {0, 18, 0}});
-  InteractionForces forces = bonds_between(m, bridging());
+  Interactions<2> forces = bonds_between(m, bridging());
   run_cleared(forces, m);
   const ContactList list = contact_list(forces.contacts(), m, 0);
   std::size_t nearest = 0;
@@ -107,7 +107,7 @@ TEST_CASE("unstretched bonds in balance fill on/(on + off) of the sites") {
 
 TEST_CASE("bonds stay with a node while the other surface slides past, and are lost beyond the cutoff") {
   Membranes m = biconcave_cells({{0, 0, 0}, {0, 18, 0}});
-  InteractionForces forces = bonds_between(m, bridging(0, 1e-300, 12));  // nothing forms or breaks
+  Interactions<2> forces = bonds_between(m, bridging(0, 1e-300, 12));  // nothing forms or breaks
   run_cleared(forces, m);
   set_bonds(forces, m);
   const std::vector<double> before = m.contacts.of_cell[0].at(0).value;
@@ -134,7 +134,7 @@ TEST_CASE("bonds stay with a node while the other surface slides past, and are l
 
 TEST_CASE("a cell between two others has bonds with each of them, and with its own image") {
   Membranes m = biconcave_cells({{0, -18, 0}, {0, 0, 0}, {0, 18, 0}});
-  InteractionForces forces = bonds_between(m, bridging(), periodic_box(44));
+  Interactions<2> forces = bonds_between(m, bridging(), periodic_box(44));
   for (int step = 0; step < 5; ++step) run_cleared(forces, m);
   std::vector<int> others;
   for (const ContactState& state : m.contacts.of_cell[1]) {
@@ -149,7 +149,7 @@ TEST_CASE("forces of bonds are minus the gradient of their energy while none for
   auto random = generator(301);
   Membranes m = biconcave_cells({{0, -18, 0.05}, {2, 0, 0.0}, {-1, 18, -0.08}});
   deform(m, random, 2, 0.02);
-  InteractionForces forces = bonds_between(m, bridging(0, 1e-300, 14));
+  Interactions<2> forces = bonds_between(m, bridging(0, 1e-300, 14));
   run_cleared(forces, m);
   set_bonds(forces, m);
   run_cleared(forces, m);
@@ -165,7 +165,7 @@ TEST_CASE("bonds pull without net force and torque, whatever their history") {
   auto random = generator(302);
   Membranes m = biconcave_cells({{0, -18, 0.05}, {2, 0, 0.0}, {-1, 18, -0.08}});
   deform(m, random, 3, 0.1);
-  InteractionForces forces = bonds_between(m, bridging());
+  Interactions<2> forces = bonds_between(m, bridging());
   for (int step = 0; step < 20; ++step) {
     move(m, 1, 0.05, 0.01);
     run_cleared(forces, m);
@@ -180,8 +180,8 @@ TEST_CASE("bonds pull without net force and torque, whatever their history") {
 TEST_CASE("bonds add to other potentials, with a cutoff of their own") {
   Membranes m = biconcave_cells({{0, 0, 0}, {1, 18, 0.03}});
   Membranes both = m, one = m, other = m;
-  InteractionForces together(both, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}, {{0, 0}, bridging()}}, periodic_box(10000));
-  InteractionForces first(one, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, periodic_box(10000)),
+  Interactions<2> together(both, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}, {{0, 0}, bridging()}}, periodic_box(10000));
+  Interactions<2> first(one, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, periodic_box(10000)),
       second(other, {{{0, 0}, bridging()}}, periodic_box(10000));
   for (int step = 0; step < 5; ++step) run_cleared(together, both), run_cleared(first, one), run_cleared(second, other);
   CHECK(one.contacts.of_cell.empty());
@@ -201,7 +201,7 @@ TEST_CASE("bonds are the same to the last bit for one, two and three workers, an
   std::vector<Membranes> results;
   for (const int workers : {1, 2, 3}) {
     Membranes m = start;
-    InteractionForces forces = bonds_between(m, bridging(), periodic_box(60, 90));
+    Interactions<2> forces = bonds_between(m, bridging(), periodic_box(60, 90));
     for (int step = 0; step < 30; ++step) {
       run_cleared(forces, m, workers);
       if (workers == 2) (void)forces.energy(m);
@@ -224,7 +224,7 @@ TEST_CASE("bonds are the same to the last bit for one, two and three workers, an
 
 TEST_CASE("the state of contacts goes on in lattice units of another size") {
   Membranes m = biconcave_cells({{0, 0, 0}, {1, 18, 0.03}});
-  InteractionForces forces = bonds_between(m, bridging());
+  Interactions<2> forces = bonds_between(m, bridging());
   run_cleared(forces, m);
   const double before = densities(forces, m, 0)[3];
   m.contacts.variables[0].initial = 0.1;

@@ -90,7 +90,7 @@ void compare(const Contacts& contacts, const Membranes& m, const core::Domain<2>
             const auto at = found.find({i, b, sx, sy});
             if (at == found.end()) {
               tally.missing += d < cutoff - 1e-9 ? 1 : 0;
-            } else if (std::abs(at->second - std::max(d, ContactList::least_distance)) > 1e-11) {
+            } else if (std::abs(at->second - std::max(d, least_distance)) > 1e-11) {
               ++tally.wrong;
             }
           }

@@ -1,6 +1,4 @@
 // Velocities at contacts: the rate of the distance, and sliding that both cells see alike.
-#include "core/contact/contact_velocity.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -14,21 +12,16 @@ namespace {
 
 constexpr double reach = 10;
 
-struct Found {
-  std::vector<ContactList> lists;
-  std::vector<ContactVelocities> velocities;
-};
-
-Found search(const Membranes& m) {
+std::vector<ContactList> search(const Membranes& m) {
   Cutoffs cutoffs(1);
   cutoffs.raise(0, 0, reach);
   Contacts contacts(m, cutoffs, periodic_box(120));
   contacts.measure({}, m);
   contacts.refresh({}, m);
-  Found found;
+  std::vector<ContactList> found;
   for (int cell = 0; cell < m.cell_count(); ++cell) {
-    found.lists.push_back(contact_list(contacts, m, cell));
-    found.velocities.emplace_back().measure(found.lists.back(), contacts.neighbours().list(cell).pairs, m);
+    found.push_back(contact_list(contacts, m, cell));
+    contacts.measure_velocities(cell, m, found.back());
   }
   return found;
 }
@@ -57,10 +50,10 @@ TEST_CASE("the normal velocity of a contact is the rate at which its distance ch
   for (std::size_t i = 0; i < m.position[0].size(); ++i)
     m.velocity[0][i] = uniform(random), m.velocity[1][i] = uniform(random);
   const double step = 1e-5;
-  const Found now = search(m), before = search(moved(m, -step)), after = search(moved(m, step));
+  const std::vector<ContactList> now = search(m), before = search(moved(m, -step)), after = search(moved(m, step));
   int compared = 0;
-  for (std::size_t cell = 0; cell < now.lists.size(); ++cell) {
-    const ContactList &list = now.lists[cell], &earlier = before.lists[cell], &later = after.lists[cell];
+  for (std::size_t cell = 0; cell < now.size(); ++cell) {
+    const ContactList &list = now[cell], &earlier = before[cell], &later = after[cell];
     if (list.count != earlier.count || list.count != later.count) continue;
     for (std::size_t i = 0; i < static_cast<std::size_t>(list.count); ++i) {
       // Where the closest point goes over to another segment, the distance has a kink.
@@ -68,7 +61,7 @@ TEST_CASE("the normal velocity of a contact is the rate at which its distance ch
       if (list.node[i] != earlier.node[i] || list.node[i] != later.node[i]) continue;
       const double rate = (later.distance[i] - earlier.distance[i]) / (2 * step);
       // Differences: rounding of distances up to ten over the step, and step^2 over the smallest distance.
-      REQUIRE(now.velocities[cell].normal[i] == Approx(rate).margin(1e-9));
+      REQUIRE(list.normal_velocity[i] == Approx(rate).margin(1e-9));
       ++compared;
     }
   }
@@ -84,13 +77,13 @@ TEST_CASE("two cells that slide against each other see the same sliding, and its
     m.velocity[0][i] = u;
     m.velocity[1][i] = v;
   }
-  const Found found = search(m);
+  const std::vector<ContactList> found = search(m);
   double below = 0, above = 0;
   for (const std::size_t cell : {0UL, 1UL}) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(found.lists[cell].count); ++i) {
-      const double normal = found.velocities[cell].normal[i], tangential = found.velocities[cell].tangential[i];
+    for (std::size_t i = 0; i < static_cast<std::size_t>(found[cell].count); ++i) {
+      const double normal = found[cell].normal_velocity[i], tangential = found[cell].tangential_velocity[i];
       const double speed = std::hypot(normal, tangential);
-      CHECK(found.velocities[cell].sliding[i] == std::abs(tangential));
+      CHECK(found[cell].sliding_speed[i] == std::abs(tangential));
       CHECK((speed == Approx(0.5) || speed < 1e-15));  // against the upper cell, or against one that rests like it
       (cell == 0 ? below : above) += tangential;
     }
@@ -106,8 +99,10 @@ TEST_CASE("cells that move together neither approach nor slide") {
   Membranes m = facing_cells(random);
   std::fill(m.velocity[0].begin(), m.velocity[0].end(), 0.7);
   std::fill(m.velocity[1].begin(), m.velocity[1].end(), -0.2);
-  for (const ContactVelocities& velocities : search(m).velocities) {
-    for (const double value : velocities.normal) CHECK(std::abs(value) < 1e-15);
-    for (const double value : velocities.tangential) CHECK(std::abs(value) < 1e-15);
+  for (const ContactList& list : search(m)) {
+    for (int i = 0; i < list.count; ++i) {
+      CHECK(std::abs(list.normal_velocity[i]) < 1e-15);
+      CHECK(std::abs(list.tangential_velocity[i]) < 1e-15);
+    }
   }
 }

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "core/contact/interaction_forces.hpp"
+#include "core/contact/interactions.hpp"
 #include "core/membrane/geometry.hpp"
 #include "core/membrane/membrane_forces.hpp"
 #include "core/membrane/turning_angle.hpp"
@@ -19,8 +19,8 @@ const std::vector<Placed> rouleau_of_three = {{0, -18, 0.05}, {2, 0, 0.0}, {-1, 
 
 MembraneForces membrane_forces(Membranes& m, MembraneLaws laws) { return {m, {.laws = {std::move(laws)}}}; }
 
-void run(InteractionForces& forces, Membranes& m, int workers = 1) {
-  for (int phase = 0; phase < InteractionForces::phases; ++phase) {
+void run(Interactions<2>& forces, Membranes& m, int workers = 1) {
+  for (int phase = 0; phase < Interactions<2>::phases; ++phase) {
     run_pass(workers, [&](Worker worker) { forces.run(worker, phase, m); });
   }
 }
@@ -132,7 +132,7 @@ TEST_CASE("interaction forces are minus the gradient of the energy") {
   Membranes m = biconcave_cells(rouleau_of_three);
   deform(m, random, 2, 0.02);
   // A deep cutoff: at 18 the Morse energy is e^-11 of its depth, so that nodes that come and go do not show.
-  InteractionForces forces(m, {{{0, 0}, morse(0.2, 0.75, 2.5, 18)}}, domain);
+  Interactions<2> forces(m, {{{0, 0}, morse(0.2, 0.75, 2.5, 18)}}, domain);
   run(forces, m);
   const auto energy = [&] {
     run(forces, m);
@@ -146,7 +146,7 @@ TEST_CASE("interaction forces have no net force and no net torque") {
   auto random = generator(31);
   Membranes m = biconcave_cells(rouleau_of_three);
   deform(m, random, 3, 0.1);
-  InteractionForces forces(m, {{{0, 0}, morse(0.2, 0.75, 2.5, 18)}}, periodic_box(10000));
+  Interactions<2> forces(m, {{{0, 0}, morse(0.2, 0.75, 2.5, 18)}}, periodic_box(10000));
   run(forces, m);
   const ForceSums sums = force_sums(m);
   REQUIRE(sums.size > 0);
@@ -157,8 +157,8 @@ TEST_CASE("interaction forces have no net force and no net torque") {
 
 TEST_CASE("periodic images pull as other cells at the same places would") {
   Membranes one = biconcave_cells({{0, 0, 0}}), row = biconcave_cells({{-46, 0, 0}, {0, 0, 0}, {46, 0, 0}});
-  InteractionForces periodic(one, {{{0, 0}, morse(0.2, 0.4, 2.5, 18)}}, periodic_box(46));
-  InteractionForces open(row, {{{0, 0}, morse(0.2, 0.4, 2.5, 18)}}, periodic_box(100000));
+  Interactions<2> periodic(one, {{{0, 0}, morse(0.2, 0.4, 2.5, 18)}}, periodic_box(46));
+  Interactions<2> open(row, {{{0, 0}, morse(0.2, 0.4, 2.5, 18)}}, periodic_box(100000));
   run(periodic, one);
   run(open, row);
   double size = 0;
@@ -179,7 +179,7 @@ TEST_CASE("several potentials between two types add up, each within its own cuto
   m.cells[1].type = 1;
   const auto far = morse(0.2, 0.3, 2.5, 18), near = morse(0.1, 0.5, 3, 6);
   Membranes both = m, first = m, second = m, other = m;
-  InteractionForces sum(m, {{{0, 1}, far}, {{1, 0}, near}}, periodic_box(10000)),
+  Interactions<2> sum(m, {{{0, 1}, far}, {{1, 0}, near}}, periodic_box(10000)),
       a(m, {{{0, 1}, far}}, periodic_box(10000)), b(m, {{{0, 1}, near}}, periodic_box(10000)),
       c(m, {{{1, 1}, far}}, periodic_box(10000));
   run(sum, both), run(a, first), run(b, second), run(c, other);
@@ -201,7 +201,7 @@ TEST_CASE("forces are the same to the last bit for one, two and three workers") 
   for (const int workers : {1, 2, 3}) {
     Membranes m = start;
     MembraneForces membrane = membrane_forces(m, {neo_hookean(0.1), bending(0.4)});
-    InteractionForces interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, periodic_box(60, 90));
+    Interactions<2> interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, periodic_box(60, 90));
     for (int step = 0; step < 30; ++step) {
       run_pass(workers, [&](Worker worker) { membrane.run(worker, m); });
       run(interaction, m, workers);
@@ -229,7 +229,7 @@ TEST_CASE("coincident nodes and nodes on another outline give no NaN") {
   membrane_forces(m, {bending(0.4)}).run({}, m);
   for (const double force : m.force[0]) REQUIRE(std::isfinite(force));
   clear(m);
-  InteractionForces interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, periodic_box(10000));
+  Interactions<2> interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, periodic_box(10000));
   run(interaction, m);
   for (std::size_t i = 0; i < m.position[0].size(); ++i) {
     REQUIRE(std::isfinite(m.force[0][i]));
@@ -241,7 +241,7 @@ TEST_CASE("coincident nodes and nodes on another outline give no NaN") {
 
 TEST_CASE("positions that are not numbers end no pass and cross no bound") {
   Membranes m = biconcave_cells({{0, 0, 0}, {0, 18, 0}});
-  InteractionForces interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, periodic_box(60, 60));
+  Interactions<2> interaction(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, periodic_box(60, 60));
   run(interaction, m);
   for (const double bad : {std::nan(""), 1e300, std::numeric_limits<double>::infinity()}) {
     Membranes broken = m;

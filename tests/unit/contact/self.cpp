@@ -1,10 +1,9 @@
 // Potentials within a membrane: gradients, sums known from elsewhere, and shapes that must not feel them.
-#include "core/contact/self_contacts.hpp"
+#include "core/contact/interactions.hpp"
 
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "core/contact/interaction_forces.hpp"
 #include "unit/cell_fixture.hpp"
 
 using namespace rouleau;
@@ -13,8 +12,12 @@ using namespace rouleau::test;
 
 namespace {
 
-void run(SelfContacts& self, Membranes& m, int workers = 1) {
-  run_pass(workers, [&](Worker worker) { self.run(worker, m); });
+Interactions<2> within(Membranes& m, const core::Potential& potential) {
+  return {m, {}, periodic_box(1000), {{0, potential}}};
+}
+
+void run(Interactions<2>& self, Membranes& m, int workers = 1) {
+  for (const int phase : {0, 1, 2}) run_pass(workers, [&](Worker worker) { self.run(worker, phase, m); });
 }
 
 core::Potential repulsion(double strength, double cutoff) { return potential("repulsion", {strength, cutoff}); }
@@ -60,7 +63,7 @@ TEST_CASE("forces within a membrane are minus the gradient of their energy, with
   Membranes m = biconcave_cells({{40, 30, 0.4}, {100, 30, 1.9}});
   deform(m, random, 1.5, 0.02);
   const core::Potential acts = GENERATE(0, 1) == 0 ? repulsion(0.4, 7) : morse(0.2, 0.75, 2.5, 18);
-  SelfContacts self(m, {{0, acts}});
+  Interactions<2> self = within(m, acts);
   run(self, m);
   const ForceSums sums = force_sums(m);
   REQUIRE(sums.size > 0.1);
@@ -73,13 +76,13 @@ TEST_CASE("forces within a membrane are minus the gradient of their energy, with
 TEST_CASE("the faces of a flat cell repel each other as those of two cells at the same distance") {
   const double apart = 3;
   Membranes one = flat_cell(60, apart);
-  SelfContacts self(one, {{0, repulsion(0.3, 4)}});
+  Interactions<2> self = within(one, repulsion(0.3, 4));
   run(self, one);
   // The lower cell of two, whose upper face is as long.
   Membranes two = flat_cell(60, 20);
   add_cell(two, 0, 0, 20 + apart, 0);
-  InteractionForces other(two, {{{0, 0}, repulsion(0.3, 4)}}, periodic_box(1000));
-  for (const int phase : {0, 1, 2}) run_pass(1, [&](Worker worker) { other.run(worker, phase, two); });
+  Interactions<2> other(two, {{{0, 0}, repulsion(0.3, 4)}}, periodic_box(1000));
+  run(other, two);
   const auto force_at = [](const Membranes& m, double x, double y) {
     for (int i = 0; i < m.node_count(); ++i)
       if (m.position[0][i] == x && std::abs(m.position[1][i] - y) < 1e-12) return m.force[1][i];
@@ -94,12 +97,12 @@ TEST_CASE("the faces of a flat cell repel each other as those of two cells at th
 
 TEST_CASE("a circle wider than the cutoff does nothing to itself, and one that was folded up is pushed open") {
   Membranes wide = circle(20, 126);
-  SelfContacts none(wide, {{0, repulsion(0.3, 38)}});
+  Interactions<2> none = within(wide, repulsion(0.3, 38));
   run(none, wide);
   CHECK(force_sums(wide).size == 0);
   CHECK(none.energy(wide) == 0);
   Membranes narrow = circle(20, 126);
-  SelfContacts some(narrow, {{0, repulsion(0.3, 38)}});
+  Interactions<2> some = within(narrow, repulsion(0.3, 38));
   for (int i = 0; i < narrow.node_count(); ++i)
     narrow.position[0][i] *= 0.6;  // now 24 wide, as many spacings apart as before
   run(some, narrow);
@@ -116,8 +119,8 @@ TEST_CASE(
   Membranes again = m, alone = biconcave_cells({{40, 30, 0}});
   for (int i = 0; i < alone.node_count(); ++i)
     alone.position[0][i] = m.position[0][i], alone.position[1][i] = m.position[1][i];
-  SelfContacts self(m, {{0, repulsion(0.4, 7)}}), same(again, {{0, repulsion(0.4, 7)}}),
-      first(alone, {{0, repulsion(0.4, 7)}});
+  Interactions<2> self = within(m, repulsion(0.4, 7)), same = within(again, repulsion(0.4, 7)),
+                  first = within(alone, repulsion(0.4, 7));
   run(self, m), run(same, again, 3), run(first, alone);
   CHECK(m.force[0] == again.force[0]);
   CHECK(m.force[1] == again.force[1]);
@@ -129,18 +132,18 @@ TEST_CASE(
 }
 
 TEST_CASE("what remembers or looks at velocities does not act within a membrane") {
-  const Membranes m = biconcave_cells({{40, 30, 0}});
+  Membranes m = biconcave_cells({{40, 30, 0}});
   const core::Potential bonds = potential("bridging", {0.7, 0.3, 2.5, 0.02, 0.03, 0.4, 0.9, 8});
-  CHECK_THROWS_WITH(SelfContacts(m, {{0, bonds}}), Catch::Matchers::Contains("bridging"));
+  CHECK_THROWS_WITH(within(m, bonds), Catch::Matchers::Contains("bridging"));
 }
 
 TEST_CASE("cells smaller than what keeps parts apart, and nodes on the other face, give no NaN") {
   Membranes small = circle(2, 12);
-  SelfContacts self(small, {{0, repulsion(0.3, 10)}});
+  Interactions<2> self = within(small, repulsion(0.3, 10));
   run(self, small);
   CHECK(force_sums(small).size == 0);
   Membranes flat = flat_cell(60, 3);
-  SelfContacts touching(flat, {{0, repulsion(0.3, 4)}});
+  Interactions<2> touching = within(flat, repulsion(0.3, 4));
   for (double& y : flat.position[1]) y = 0;
   run(touching, flat);
   CHECK(std::isfinite(force_sums(flat).size));

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "core/contact/surface_interactions.hpp"
-#include "core/contact/surface_wall_contacts.hpp"
+#include "core/contact/interactions.hpp"
+#include "core/contact/wall_contacts.hpp"
 #include "shape/surface.hpp"
 #include "unit/cell_fixture.hpp"
 #include "unit/fake_models.hpp"
@@ -50,7 +50,7 @@ Surfaces neighbours() { return spheres({{8, 9.5, 3}, {8.5, 9.1, 12.4}}); }
 void clear_forces(Surfaces& s) {
   for (auto& force : s.force) std::fill(force.begin(), force.end(), 0.0);
 }
-void run(SurfaceInteractions& forces, Surfaces& s, int workers = 1) {
+void run(Interactions<3>& forces, Surfaces& s, int workers = 1) {
   clear_forces(s);
   for (int phase = 0; phase < 3; ++phase) {
     for (int worker = 0; worker < workers; ++worker) forces.run({worker, workers}, phase, s);
@@ -71,7 +71,7 @@ void move(Surfaces& s, int cell, const Vec<3>& by) {
 }
 
 /// Gives nodes bonds that vanish towards the cutoff.
-void set_bonds(const SurfaceInteractions& forces, Surfaces& s) {
+void set_bonds(const Interactions<3>& forces, Surfaces& s) {
   for (int cell = 0; cell < s.cell_count(); ++cell) {
     std::vector<SurfaceContact> contacts;
     forces.contacts().find(cell, s, contacts);
@@ -89,7 +89,7 @@ void set_bonds(const SurfaceInteractions& forces, Surfaces& s) {
 
 TEST_CASE("bonds between surfaces at a fixed distance follow the solution of their rate equation") {
   Surfaces s = neighbours();
-  SurfaceInteractions forces(s, {{{0, 0}, bridging()}}, domain);
+  Interactions<3> forces(s, {{{0, 0}, bridging()}}, domain);
   int done = 0;
   for (const int steps : {1, 9, 40, 2000}) {
     for (; done < steps; ++done) run(forces, s);
@@ -110,7 +110,7 @@ TEST_CASE("bonds between surfaces at a fixed distance follow the solution of the
 
 TEST_CASE("bonds of surfaces stay with a node while the other one slides past, and are lost beyond the cutoff") {
   Surfaces s = neighbours();
-  SurfaceInteractions forces(s, {{{0, 0}, bridging(0, 1e-300)}}, domain);  // nothing forms or breaks
+  Interactions<3> forces(s, {{{0, 0}, bridging(0, 1e-300)}}, domain);  // nothing forms or breaks
   run(forces, s);
   set_bonds(forces, s);
   const std::vector<ContactState> before = s.contacts.of_cell[0];
@@ -141,7 +141,7 @@ TEST_CASE("bonds of surfaces stay with a node while the other one slides past, a
 
 TEST_CASE("forces of bonds between surfaces are minus the gradient of their energy, and balance, while none changes") {
   Surfaces s = neighbours();
-  SurfaceInteractions forces(s, {{{0, 0}, bridging(0, 1e-300)}}, domain);
+  Interactions<3> forces(s, {{{0, 0}, bridging(0, 1e-300)}}, domain);
   run(forces, s);
   set_bonds(forces, s);
   const ContactMemory bonds = s.contacts;
@@ -179,7 +179,7 @@ TEST_CASE("forces of bonds between surfaces are minus the gradient of their ener
 TEST_CASE("bonds of surfaces add to other potentials, and looking at them changes none") {
   Surfaces both = neighbours(), one = both, other = both;
   const core::Potential spring = test::spring_potential(0.03, 1.5, 2);
-  SurfaceInteractions together(both, {{{0, 0}, spring}, {{0, 0}, bridging()}}, domain),
+  Interactions<3> together(both, {{{0, 0}, spring}, {{0, 0}, bridging()}}, domain),
       first(one, {{{0, 0}, spring}}, domain), second(other, {{{0, 0}, bridging()}}, domain);
   for (int step = 0; step < 5; ++step) {
     run(together, both, 3), run(first, one), run(second, other, 2);
@@ -203,7 +203,7 @@ TEST_CASE("bonds of surfaces add to other potentials, and looking at them change
 TEST_CASE("each wall has bonds of its own with a surface") {
   const Domain<3> channel{{24, 20, 22}, {true, false, false}};
   Surfaces s = spheres({{8, 5.0, 16.0}});  // its lowest point at y = 1, its farthest at z = 20: 1.5 from both walls
-  SurfaceWallContacts walls(s, {{0, bridging()}}, channel);
+  WallContacts<3> walls(s, {{0, bridging()}}, channel);
   for (int step = 0; step < 60; ++step) clear_forces(s), walls.run({}, s);
   REQUIRE(s.wall_contacts.of_cell[0].size() == 2);
   int seen = 0;
@@ -226,7 +226,7 @@ TEST_CASE("surfaces that slide against each other see the part of the velocity t
   const Vec<3> motion(0.3, -0.2, 0.5);  // of the second cell; the first rests
   for (int i = s.cells[1].first; i < s.node_count(); ++i)
     s.velocity[0][i] = motion.x(), s.velocity[1][i] = motion.y(), s.velocity[2][i] = motion.z();
-  SurfaceInteractions forces(s, {{{0, 0}, test::rubbing(2, cutoff)}}, domain);
+  Interactions<3> forces(s, {{{0, 0}, test::rubbing(2, cutoff)}}, domain);
   CHECK(forces.needs_velocities());
   run(forces, s);
   const SurfaceContacts all = SurfaceContacts::within(cutoff, s, domain);
@@ -248,7 +248,7 @@ TEST_CASE("surfaces that slide against each other see the part of the velocity t
   REQUIRE(expected.norm() > 1);
   CHECK((on_first - expected).norm() < 1e-12 * expected.norm());
   const Domain<3> channel{{24, 20, 22}, {true, false, false}};
-  CHECK_THROWS_AS(SurfaceWallContacts(s, {{0, test::rubbing(2, cutoff)}}, channel), std::invalid_argument);
+  CHECK_THROWS_AS(WallContacts<3>(s, {{0, test::rubbing(2, cutoff)}}, channel), std::invalid_argument);
 }
 
 TEST_CASE("the normal velocity at a contact of surfaces is the rate at which the distance changes") {
@@ -257,7 +257,7 @@ TEST_CASE("the normal velocity at a contact of surfaces is the rate at which the
   std::uniform_real_distribution<double> any(-1, 1);
   for (auto& velocity : s.velocity)
     for (double& v : velocity) v = any(random);
-  SurfaceInteractions forces(s, {{{0, 0}, test::damper(2, cutoff, "normal_velocity")}}, domain);
+  Interactions<3> forces(s, {{{0, 0}, test::damper(2, cutoff, "normal_velocity")}}, domain);
   CHECK(forces.needs_velocities());
   run(forces, s);
   // What is taken out of the motion is the sum over all contacts of A/2 c (d distance / dt)^2.
@@ -297,6 +297,6 @@ TEST_CASE("the normal velocity at a contact of surfaces is the rate at which the
   REQUIRE(expected > 1);
   CHECK(power == Approx(expected).epsilon(1e-6));
   CHECK(std::abs(net) < 1e-12 * size);
-  CHECK_THROWS_AS(SurfaceInteractions(s, {{{0, 0}, test::damper(2, cutoff, "tangential_velocity")}}, domain),
+  CHECK_THROWS_AS(Interactions<3>(s, {{{0, 0}, test::damper(2, cutoff, "tangential_velocity")}}, domain),
                   std::invalid_argument);
 }

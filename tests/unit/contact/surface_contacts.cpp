@@ -183,7 +183,7 @@ TEST_CASE(
   for (int trial = 0; trial < 4; ++trial) {
     Surfaces s = pair(random, 0.6);
     const Interaction interaction{{0, 1}, test::spring_potential(0.03, 1.5, 3)};
-    SurfaceInteractions forces(s, {interaction}, domain);
+    Interactions<3> forces(s, {interaction}, domain);
     run(forces, s);
     const Surfaces at = s;
     double largest = 0, net[3] = {0, 0, 0};
@@ -195,7 +195,7 @@ TEST_CASE(
     for (const double sum : net) CHECK(std::abs(sum) < 1e-12 * largest);
     check_gradient(forces, s, largest, random);
     run(forces, s, 3);
-    SurfaceInteractions fresh(s, {interaction}, domain);
+    Interactions<3> fresh(s, {interaction}, domain);
     Surfaces again = s;
     run(fresh, again, 2);
     CHECK(s.force[0] == again.force[0]);
@@ -210,7 +210,7 @@ TEST_CASE("two bodies that attract each other feel neither a net force nor a tor
   Surfaces s = pair(random, 0.4);
   for (double& x : s.position[0]) x += 30;
   for (double& y : s.position[1]) y += 20;
-  SurfaceInteractions forces(s, {{{0, 1}, test::spring_potential(0.03, 1.5, 3)}}, open);
+  Interactions<3> forces(s, {{{0, 1}, test::spring_potential(0.03, 1.5, 3)}}, open);
   run(forces, s);
   Vec<3> force = Vec<3>::Zero(), torque = Vec<3>::Zero();
   double largest = 0;
@@ -235,7 +235,7 @@ TEST_CASE("spheres around the same centre have the energy of their areas at the 
           std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(n, Vec<3>::Constant(radius)))));
     add_cell(s, 0, {12, 10, 11});
     add_cell(s, 1, {12, 10, 11}, Eigen::AngleAxisd(0.3, Vec<3>(1, 2, 3).normalized()).toRotationMatrix());
-    SurfaceInteractions forces(s, {{{0, 1}, test::spring_potential(0.5, 1.0, 4)}},
+    Interactions<3> forces(s, {{{0, 1}, test::spring_potential(0.5, 1.0, 4)}},
                                Domain<3>{{24, 24, 24}, {true, true, true}});
     run(forces, s);
     const double exact = 0.25 * (0.5 * 0.5 - 3 * 3) * 4 * std::numbers::pi * (36 + 7.5 * 7.5) / 2;

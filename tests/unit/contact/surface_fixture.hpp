@@ -6,12 +6,12 @@
 #include <cmath>
 #include <random>
 
-#include "core/contact/surface_interactions.hpp"
+#include "core/contact/interactions.hpp"
 
 namespace rouleau::test {
 
 /// The interactions alone, a phase at a time, each by all workers, as barriers would have it.
-inline void run(core::SurfaceInteractions& forces, core::Surfaces& s, int workers = 1) {
+inline void run(core::Interactions<3>& forces, core::Surfaces& s, int workers = 1) {
   for (auto& force : s.force) std::fill(force.begin(), force.end(), 0.0);
   for (int phase = 0; phase < 3; ++phase) {
     for (int worker = 0; worker < workers; ++worker) forces.run({worker, workers}, phase, s);
@@ -19,7 +19,7 @@ inline void run(core::SurfaceInteractions& forces, core::Surfaces& s, int worker
 }
 
 /// Forces of run() on 40 nodes against differences of the energy, to 1e-7 of the `largest` force.
-inline void check_gradient(core::SurfaceInteractions& forces, core::Surfaces& s, double largest, std::mt19937& random) {
+inline void check_gradient(core::Interactions<3>& forces, core::Surfaces& s, double largest, std::mt19937& random) {
   run(forces, s);
   const core::Surfaces at = s;
   const auto& found = at.force;

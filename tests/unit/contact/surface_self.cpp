@@ -28,7 +28,7 @@ Surfaces of_shape(const shape::TriangleSurface& mesh) {
 }
 Surfaces sphere(double radius, int n) { return of_shape(shape::ellipsoid(n, Vec<3>::Constant(radius))); }
 
-SurfaceInteractions within(Surfaces& s, double stiffness, double rest, double cutoff) {
+Interactions<3> within(Surfaces& s, double stiffness, double rest, double cutoff) {
   return {s, {}, domain, {{0, test::spring_potential(stiffness, rest, cutoff)}}};
 }
 
@@ -128,7 +128,7 @@ TEST_CASE(
   for (auto& places : s.position) {
     for (double& place : places) place += 0.05 * any(random);
   }
-  SurfaceInteractions forces = within(s, 0.03, 1.5, 2.5);
+  Interactions<3> forces = within(s, 0.03, 1.5, 2.5);
   run(forces, s);
   const Surfaces at = s;
   const double largest = largest_force(s);
@@ -146,12 +146,12 @@ TEST_CASE(
 
 TEST_CASE("a sphere wider than the cutoff does nothing to itself, and one that was squeezed is pushed open") {
   Surfaces round = sphere(8, 8);
-  SurfaceInteractions none = within(round, 0.1, 15, 15);
+  Interactions<3> none = within(round, 0.1, 15, 15);
   run(none, round);
   CHECK(largest_force(round) == 0);
   CHECK(none.energy(round) == 0);
   Surfaces squeezed = sphere(8, 8);
-  SurfaceInteractions some = within(squeezed, 0.1, 6, 6);
+  Interactions<3> some = within(squeezed, 0.1, 6, 6);
   for (double& z : squeezed.position[2]) z = 20 + 0.25 * (z - 20);  // 4 spacings thick in the middle
   run(some, squeezed);
   int pushed = 0;
@@ -166,7 +166,7 @@ TEST_CASE("a sphere wider than the cutoff does nothing to itself, and one that w
 
 TEST_CASE("faces that are nearly flat push each other by their area times the potential's force") {
   Surfaces s = sphere(8, 12);
-  SurfaceInteractions forces = within(s, 0.1, 2, 2);
+  Interactions<3> forces = within(s, 0.1, 2, 2);
   for (double& z : s.position[2]) z = 20 + 0.05 * (z - 20);  // 0.8 spacings thick in the middle
   run(forces, s);
   const RestSurface& rest = s.type_of(0);
@@ -186,8 +186,8 @@ TEST_CASE("a potential within surfaces acts on its type alone, beside others bet
   add_cell(s, 1, {20, 24, 20});
   Surfaces within_alone = s, between_alone = s;
   const Potential spring = test::spring_potential(0.03, 1.5, 2.5);
-  SurfaceInteractions both(s, {{{0, 1}, spring}}, domain, {{0, spring}});
-  SurfaceInteractions own(within_alone, {}, domain, {{0, spring}}), other(between_alone, {{{0, 1}, spring}}, domain);
+  Interactions<3> both(s, {{{0, 1}, spring}}, domain, {{0, spring}});
+  Interactions<3> own(within_alone, {}, domain, {{0, spring}}), other(between_alone, {{{0, 1}, spring}}, domain);
   run(both, s), run(own, within_alone), run(other, between_alone);
   const double largest = largest_force(s);
   REQUIRE(largest_force(within_alone) > 1e-3);
@@ -202,5 +202,5 @@ TEST_CASE("a potential within surfaces acts on its type alone, beside others bet
 TEST_CASE("what remembers or looks at velocities does not act within a surface") {
   Surfaces s = sphere(6, 5);
   const Potential damper = test::damper(0.1, 3, "normal_velocity");
-  CHECK_THROWS_WITH(SurfaceInteractions(s, {}, domain, {{0, damper}}), Catch::Matchers::Contains("damper"));
+  CHECK_THROWS_WITH(Interactions<3>(s, {}, domain, {{0, damper}}), Catch::Matchers::Contains("damper"));
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/contact/surface_wall_contacts.hpp"
+#include "core/contact/wall_contacts.hpp"
 #include "shape/surface.hpp"
 #include "unit/fake_models.hpp"
 
@@ -23,10 +23,10 @@ Surfaces sphere(int n, double radius, const Vec<3>& center) {
   add_cell(s, 0, center, Eigen::AngleAxisd(0.4, Vec<3>(3, 1, 2).normalized()).toRotationMatrix());
   return s;
 }
-SurfaceWallContacts walls(Surfaces& s) { return {s, {{0, test::spring_potential(stiffness, rest, cutoff)}}, domain}; }
+WallContacts<3> walls(Surfaces& s) { return {s, {{0, test::spring_potential(stiffness, rest, cutoff)}}, domain}; }
 double energy(Surfaces s) { return walls(s).energy(s); }
 
-void act(SurfaceWallContacts& contacts, Surfaces& s, int workers = 1) {
+void act(WallContacts<3>& contacts, Surfaces& s, int workers = 1) {
   for (auto& force : s.force) std::fill(force.begin(), force.end(), 0.0);
   for (int worker = 0; worker < workers; ++worker) contacts.run({worker, workers}, s);
 }
@@ -61,7 +61,7 @@ TEST_CASE("the wall of a tube acts along its radius") {
       exact += stiffness / 2 * (here * here - there * there) * 2 * std::numbers::pi * of_sphere * 2 * of_sphere / zones;
   }
   Surfaces s = sphere(16, of_sphere, {3, 9.5, 10.5});
-  SurfaceWallContacts tube(s, {{0, test::spring_potential(stiffness, rest, cutoff)}}, domain, radius);
+  WallContacts<3> tube(s, {{0, test::spring_potential(stiffness, rest, cutoff)}}, domain, radius);
   CHECK(tube.energy(s) == Approx(exact).epsilon(0.01));
   for (double& y : s.position[1]) y += 0.7;
   act(tube, s);
@@ -84,7 +84,7 @@ TEST_CASE("the wall of a tube acts along its radius") {
 
 TEST_CASE("forces of walls on surfaces are minus the gradient of their energy, whatever the number of workers") {
   Surfaces s = sphere(6, 4, {3, 4.3, 17.1});  // in a corner
-  SurfaceWallContacts contacts = walls(s);
+  WallContacts<3> contacts = walls(s);
   act(contacts, s);
   const Surfaces at = s;
   double largest = 0, along_y = 0;
@@ -115,9 +115,9 @@ TEST_CASE("forces of walls on surfaces are minus the gradient of their energy, w
 TEST_CASE("walls act on surfaces where there are walls, and do not rub") {
   Surfaces s = sphere(4, 3, {4, 4, 4});
   CHECK_THROWS_AS(
-      SurfaceWallContacts(s, {{0, test::spring_potential(1, 1, 2)}}, Domain<3>{{8, 8, 8}, {true, true, true}}),
+      WallContacts<3>(s, {{0, test::spring_potential(1, 1, 2)}}, Domain<3>{{8, 8, 8}, {true, true, true}}),
       std::invalid_argument);
-  CHECK_THROWS_AS(SurfaceWallContacts(s, {{0, test::damper(3, 2, "tangential_velocity")}}, domain),
+  CHECK_THROWS_AS(WallContacts<3>(s, {{0, test::damper(3, 2, "tangential_velocity")}}, domain),
                   std::invalid_argument);
 }
 
@@ -126,7 +126,7 @@ TEST_CASE("a potential is given the velocity at which a surface leaves the wall 
   std::fill(s.velocity[0].begin(), s.velocity[0].end(), 0.5);
   std::fill(s.velocity[1].begin(), s.velocity[1].end(), 0.01);
   std::fill(s.velocity[2].begin(), s.velocity[2].end(), 0.02);
-  SurfaceWallContacts contacts(s, {{0, test::damper(3, 2, "normal_velocity")}}, domain);
+  WallContacts<3> contacts(s, {{0, test::damper(3, 2, "normal_velocity")}}, domain);
   act(contacts, s);
   const std::vector<double>& area = s.type_of(0).node_area;
   double size_y = 0, size_z = 0;

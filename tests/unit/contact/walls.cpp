@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/contact/interaction_forces.hpp"
+#include "core/contact/interactions.hpp"
 #include "core/model/compiled_in.hpp"
 #include "unit/cell_fixture.hpp"
 
@@ -20,7 +20,7 @@ namespace {
 /// Walls at -1/2 and height - 1/2.
 core::Domain<2> channel(int height) { return {{200, height}, {true, false}}; }
 
-void run(WallContacts& walls, Membranes& m, int workers = 1) {
+void run(WallContacts<2>& walls, Membranes& m, int workers = 1) {
   run_pass(workers, [&](Worker worker) { walls.run(worker, m); });
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("forces of walls are minus the gradient of their energy, at either wal
   const WallInteraction held =
       GENERATE(WallInteraction{0, morse(0.2, 0.75, 2.5, 18)}, WallInteraction{0, repulsion(0.4, 9)},
                WallInteraction{0, lennard_jones(0.2, 2.5, 300)});
-  WallContacts walls(m, {held}, channel(height));
+  WallContacts<2> walls(m, {held}, channel(height));
   run(walls, m);
   REQUIRE(force_sums(m).size > 0.1);
   CHECK(gradient_error(
@@ -84,9 +84,9 @@ TEST_CASE("a flat membrane holds with a wall what it holds with another membrane
   const core::Potential held = morse(0.2, 0.75, 2.5, 9);
   Membranes before_wall = polygons({box(40, -0.5 + gap, 12)});
   Membranes before_other = polygons({box(40, 30, 12), box(40, 30 - gap - 12, 12)});
-  WallContacts wall(before_wall, {{0, held}}, channel(90));
-  InteractionForces other(before_other, {{{0, 1}, held}}, periodic_box(10000));
-  for (int phase = 0; phase < InteractionForces::phases; ++phase) other.run({}, phase, before_other);
+  WallContacts<2> wall(before_wall, {{0, held}}, channel(90));
+  Interactions<2> other(before_other, {{{0, 1}, held}}, periodic_box(10000));
+  for (int phase = 0; phase < Interactions<2>::phases; ++phase) other.run({}, phase, before_other);
   run(wall, before_wall);
   CHECK(wall.energy(before_wall) == Approx(other.energy(before_other)).epsilon(1e-13));
   CHECK(std::abs(wall.energy(before_wall)) > 1);
@@ -106,7 +106,7 @@ TEST_CASE("a circle before a wall is repelled by the integral of the force over 
   std::vector<double> errors;
   for (const int sides : {125, 250, 500}) {
     Membranes m = polygons({circle(radius, 60, -0.5 + gap + radius, sides)});
-    WallContacts walls(m, {{0, repulsion(strength, reach)}}, channel(90));
+    WallContacts<2> walls(m, {{0, repulsion(strength, reach)}}, channel(90));
     run(walls, m);
     CHECK(walls.net_force(m) == Approx(force_sums(m).y).epsilon(1e-13));
     CHECK(force_sums(m).x == 0);
@@ -125,7 +125,7 @@ TEST_CASE("the lower wall does what the upper wall does to the mirror image, to 
   for (double& y : m.position[1]) y = std::round(y * 1048576) / 1048576;  // so that height - 1 - y is exact
   Membranes mirrored = m;
   for (double& y : mirrored.position[1]) y = height - 1 - y;
-  WallContacts walls(m, {{0, morse(0.2, 0.75, 2.5, 18)}}, channel(height));
+  WallContacts<2> walls(m, {{0, morse(0.2, 0.75, 2.5, 18)}}, channel(height));
   run(walls, m), run(walls, mirrored);
   for (std::size_t i = 0; i < m.position[0].size(); ++i) {
     REQUIRE(mirrored.force[1][i] == -m.force[1][i]);
@@ -140,7 +140,7 @@ TEST_CASE("walls act on cells of the named type alone, within each potential's o
   m.cells[1].type = 1;
   Membranes both = m, first = m, second = m;
   const WallInteraction far{0, morse(0.2, 0.3, 2.5, 18)}, near{0, repulsion(0.3, 4)};
-  WallContacts sum(m, {far, near}, channel(90)), a(m, {far}, channel(90)), b(m, {near}, channel(90));
+  WallContacts<2> sum(m, {far, near}, channel(90)), a(m, {far}, channel(90)), b(m, {near}, channel(90));
   run(sum, both), run(a, first), run(b, second);
   int beyond = 0, touched = 0;
   for (int i = 0; i < m.node_count(); ++i) {
@@ -160,7 +160,7 @@ TEST_CASE("a potential is given the velocity at which a membrane leaves the wall
   Membranes m = biconcave_cells({{40, 9, 0}, {100, 54, 0}});
   std::fill(m.velocity[0].begin(), m.velocity[0].end(), 0.5);
   std::fill(m.velocity[1].begin(), m.velocity[1].end(), 0.01);
-  WallContacts walls(m, {{0, damper(3, 8, "normal_velocity")}}, channel(64));
+  WallContacts<2> walls(m, {{0, damper(3, 8, "normal_velocity")}}, channel(64));
   run(walls, m);
   double size = 0;
   for (int i = 0; i < m.node_count(); ++i) {
@@ -176,8 +176,8 @@ TEST_CASE("a potential is given the velocity at which a membrane leaves the wall
 TEST_CASE("without walls, and for what rubs, there are no contacts with walls") {
   Membranes m = biconcave_cells({{40, 9, 0}});
   const core::Potential good = morse(0.2, 0.75, 2.5, 18), rubs = damper(3, 8, "tangential_velocity");
-  CHECK_THROWS_WITH(WallContacts(m, {{0, good}}, periodic_box(200, 90)), Catch::Matchers::Contains("needs walls"));
-  CHECK_THROWS_WITH(WallContacts(m, {{0, rubs}}, channel(90)), Catch::Matchers::Contains("damper"));
+  CHECK_THROWS_WITH(WallContacts<2>(m, {{0, good}}, periodic_box(200, 90)), Catch::Matchers::Contains("needs walls"));
+  CHECK_THROWS_WITH(WallContacts<2>(m, {{0, rubs}}, channel(90)), Catch::Matchers::Contains("damper"));
 }
 
 TEST_CASE("bonds of a flat membrane with a wall form and pull as those with another membrane at the same distance") {
@@ -185,11 +185,11 @@ TEST_CASE("bonds of a flat membrane with a wall form and pull as those with anot
   const core::Potential bond = bridging_of_walls();
   Membranes before_wall = polygons({box(40, -0.5 + gap, 12)});
   Membranes before_other = polygons({box(40, 30, 12), box(40, 30 - gap - 12, 12)});
-  WallContacts wall(before_wall, {{0, bond}}, channel(90));
-  InteractionForces other(before_other, {{{0, 1}, bond}}, periodic_box(10000));
+  WallContacts<2> wall(before_wall, {{0, bond}}, channel(90));
+  Interactions<2> other(before_other, {{{0, 1}, bond}}, periodic_box(10000));
   for (int step = 0; step < 20; ++step) {
     for (auto* m : {&before_wall, &before_other}) std::fill(m->force[1].begin(), m->force[1].end(), 0.0);
-    for (int phase = 0; phase < InteractionForces::phases; ++phase) other.run({}, phase, before_other);
+    for (int phase = 0; phase < Interactions<2>::phases; ++phase) other.run({}, phase, before_other);
     run(wall, before_wall);
     for (int i = 1; i < 40; ++i) REQUIRE(before_wall.force[1][i] == Approx(before_other.force[1][i]).epsilon(1e-12));
   }
@@ -208,7 +208,7 @@ TEST_CASE(
   Membranes m = biconcave_cells({{40, 9.5, 0}, {100, 9.5, 0}});  // 19 high, 13.1 of which a cell fills
   m.cells[1].type = 1;
   const core::Domain<2> narrow = channel(20);
-  WallContacts walls(m, {{0, bridging_of_walls()}}, narrow);
+  WallContacts<2> walls(m, {{0, bridging_of_walls()}}, narrow);
   for (int step = 0; step < 3; ++step) run(walls, m);
   const std::vector<ContactState>& bonds = m.wall_contacts.of_cell[0];
   REQUIRE(bonds.size() == 2);
@@ -221,14 +221,14 @@ TEST_CASE(
   }
   const std::vector<double> upper = bonds[1].value;
   Membranes before = m;
-  WallContacts again(before, {{0, bridging_of_walls()}}, narrow);
+  WallContacts<2> again(before, {{0, bridging_of_walls()}}, narrow);
   run(walls, m), run(again, before);
   CHECK(before.wall_contacts.of_cell[0][1].value == m.wall_contacts.of_cell[0][1].value);
   CHECK(m.wall_contacts.of_cell[0][1].value != upper);
   CHECK(m.wall_contacts.variables.size() == 1);
 
   for (int i = 0; i < m.cells[0].count; ++i) m.position[1][i] += 40;
-  WallContacts wide(m, {{0, bridging_of_walls()}}, channel(90));
+  WallContacts<2> wide(m, {{0, bridging_of_walls()}}, channel(90));
   run(wide, m);
   CHECK(m.wall_contacts.of_cell[0].empty());
 }
@@ -237,7 +237,7 @@ TEST_CASE("nodes on a wall, beyond it and nowhere give a force or none, but no N
   Membranes m = biconcave_cells({{40, 9, 0}});
   m.position[1][70] = -0.5, m.position[1][71] = -0.9, m.position[1][72] = std::nan(""),
   m.position[1][73] = std::numeric_limits<double>::infinity();
-  WallContacts walls(m, {{0, morse(0.2, 0.75, 2.5, 18)}}, channel(90));
+  WallContacts<2> walls(m, {{0, morse(0.2, 0.75, 2.5, 18)}}, channel(90));
   run(walls, m);
   for (const double force : m.force[1]) REQUIRE(std::isfinite(force));
   CHECK(m.force[1][70] > 0);
@@ -254,7 +254,7 @@ TEST_CASE("forces of walls are the same to the last bit for one, two and five wo
   std::vector<Membranes> results;
   for (const int workers : {1, 2, 5}) {
     Membranes m = start;
-    WallContacts walls(m, {{0, morse(0.2, 0.3, 2.5, 18)}}, channel(64));
+    WallContacts<2> walls(m, {{0, morse(0.2, 0.3, 2.5, 18)}}, channel(64));
     run(walls, m, workers);
     results.push_back(m);
   }
@@ -273,7 +273,7 @@ TEST_CASE(
       return polygons({circle(radius, 40, -0.5 + gap + radius, sides, turned - std::numbers::pi / 2)});
     };
     Membranes m = at(distance, 0);
-    WallContacts walls(m, {{0, morse(1, 2 / width, distance, 60)}}, channel(90));
+    WallContacts<2> walls(m, {{0, morse(1, 2 / width, distance, 60)}}, channel(90));
     double pull = 0;
     for (int k = 0; k <= 2000; ++k) pull = std::max(pull, -walls.net_force(at(distance + width * k / 400, 0)));
     std::vector<double> least;

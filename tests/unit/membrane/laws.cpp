@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <iostream>
 
-#include "core/contact/interaction_forces.hpp"
+#include "core/contact/interactions.hpp"
 #include "core/membrane/geometry.hpp"
 #include "core/membrane/membrane_forces.hpp"
 #include "unit/cell_fixture.hpp"
@@ -60,8 +60,8 @@ double friction(double width, int segments = 31) {
   double most = 0;
   for (int k = 0; k < places; ++k) {
     Membranes m = mating_circles(radius, gap, segments, 2 * 3.141592653589793 / segments * k / places);
-    InteractionForces forces(m, {{{0, 1}, morse(1, 2 / width, gap, 6)}}, periodic_box(10000));
-    for (int phase = 0; phase < InteractionForces::phases; ++phase) forces.run({}, phase, m);
+    Interactions<2> forces(m, {{{0, 1}, morse(1, 2 / width, gap, 6)}}, periodic_box(10000));
+    for (int phase = 0; phase < Interactions<2>::phases; ++phase) forces.run({}, phase, m);
     double torque = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(segments); ++i)
       torque += m.position[0][i] * m.force[1][i] - m.position[1][i] * m.force[0][i];
@@ -197,11 +197,11 @@ TEST_CASE(
   deform(m, random, 2, 0.02);
   for (const auto& acting : potentials) {
     CAPTURE(acting.id);
-    InteractionForces forces(m, {{{0, 0}, acting}}, periodic_box(10000));
+    Interactions<2> forces(m, {{{0, 0}, acting}}, periodic_box(10000));
     const auto run = [&] {
       std::fill(m.force[0].begin(), m.force[0].end(), 0.0);
       std::fill(m.force[1].begin(), m.force[1].end(), 0.0);
-      for (int phase = 0; phase < InteractionForces::phases; ++phase) forces.run({}, phase, m);
+      for (int phase = 0; phase < Interactions<2>::phases; ++phase) forces.run({}, phase, m);
     };
     run();
     const ForceSums sums = force_sums(m);

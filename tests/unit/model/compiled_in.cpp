@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <numbers>
 
-#include "core/contact/interaction_forces.hpp"
+#include "core/contact/interactions.hpp"
 #include "core/membrane/membrane_forces.hpp"
 #include "unit/cell_fixture.hpp"
 #include "unit/fake_models.hpp"
@@ -38,8 +38,8 @@ TEST_CASE("a stretched ring of springs pulls every node inwards by twice the ten
 
 TEST_CASE("a constant potential between two rings presses on each with the force times their mean length") {
   Membranes m = mating_circles(radius, gap, segments, 0);
-  InteractionForces forces(m, {{{0, 1}, constant_force(0.3, 2 * gap)}}, periodic_box(1000));
-  for (int phase = 0; phase < InteractionForces::phases; ++phase) forces.run({}, phase, m);
+  Interactions<2> forces(m, {{{0, 1}, constant_force(0.3, 2 * gap)}}, periodic_box(1000));
+  for (int phase = 0; phase < Interactions<2>::phases; ++phase) forces.run({}, phase, m);
   // Up to the corners of the polygons: (pi / segments)^2 / 2.
   const double mean = segments * (m.types[0]->rest_weight[0] + m.types[1]->rest_weight[0]) / 2;
   for (const CellRange& cell : m.cells) CHECK(sum_of_sizes(m, cell) == Approx(0.3 * mean).epsilon(2e-3));
