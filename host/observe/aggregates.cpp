@@ -19,9 +19,9 @@ namespace {
 /// Calls visit(a, cells) for this rank's cells for which wanted(a) holds, with the cells it knows that may come within
 /// `reach` of it, both in ascending order: what is found must not depend on the grid.
 template <class Wanted, class Visit>
-void for_each_near(const core::Membranes& m, const std::vector<core::Bounds>& boxes, double reach,
+void for_each_near(const core::Membranes& m, const std::vector<core::BoundingBox<2>>& boxes, double reach,
                    const core::Domain<2>& domain, Wanted wanted, Visit visit) {
-  const core::CellGrid<2> grid(core::boxes_of(boxes), reach, domain);
+  const core::CellGrid<2> grid(boxes, reach, domain);
   std::vector<int> near;
   for (const int cell : m.own_cells()) {
     if (!wanted(cell)) continue;
@@ -35,7 +35,7 @@ void for_each_near(const core::Membranes& m, const std::vector<core::Bounds>& bo
 
 std::vector<CellContact> find_touching_cells(const core::Membranes& m, const core::Domain<2>& domain, double reach) {
   std::vector<CellContact> contacts;
-  const std::vector<core::Bounds> boxes = core::bounds_of_known(m);
+  const std::vector<core::BoundingBox<2>> boxes = core::boxes_of_known<2>(m);
   const auto each = [](int) { return true; };
   for_each_near(m, boxes, reach, domain, each, [&](int a, const std::vector<int>& near) {
     for (const int b : near) {
@@ -121,7 +121,7 @@ std::vector<double> smallest_gaps(core::Surroundings<2>& around, const core::Dom
   double reach = std::min(first, domain.period(0) / 16);
   for (std::vector<char> open = open_ones(m, gaps); reach < most && around.show(reach, open); reach *= 2) {
     const auto is_open = [&](int cell) { return open[cell] != 0; };
-    const std::vector<core::Bounds> boxes = core::bounds_of_known(m);
+    const std::vector<core::BoundingBox<2>> boxes = core::boxes_of_known<2>(m);
     for_each_near(m, boxes, reach, domain, is_open, [&](int a, const std::vector<int>& near) {
       double& gap = gaps[a];
       for (const int b : near) gap = std::min(gap, core::smallest_gap(m, a, b, domain, std::min(gap, reach)));
@@ -133,8 +133,8 @@ std::vector<double> smallest_gaps(core::Surroundings<2>& around, const core::Dom
 
 double wall_gap(const core::Membranes& m, const core::CellRange& cell, const core::Domain<2>& domain) {
   if (!domain.walled(1)) return std::nan("");
-  const core::Bounds box = core::bounds(m, cell);
-  return std::min(box.y_min + 0.5, domain.size[1] - 0.5 - box.y_max);
+  const core::BoundingBox<2> box = core::box_of<2>(m, cell);
+  return std::min(box.least[1] + 0.5, domain.size[1] - 0.5 - box.most[1]);
 }
 
 Aggregates find_aggregates(int cells, const std::vector<CellContact>& contacts) {

@@ -110,9 +110,9 @@ class OutlineChecker {
   }
 
   void check_fits(std::size_t cell) const {
-    const core::Bounds extent = core::bounds(membranes_, membranes_.cells[cell]);
+    const core::BoundingBox<2> extent = core::box_of<2>(membranes_, membranes_.cells[cell]);
     const auto who = [&] { return name(cell); };
-    const double width = extent.x_max - extent.x_min, height = extent.y_max - extent.y_min;
+    const double width = extent.most[0] - extent.least[0], height = extent.most[1] - extent.least[1];
     if (!(width < domain_.period(0))) {
       refuse(cell, who() + " is " + micrometres(width) + " wide, more than the periodic length of the domain, " +
                        micrometres(domain_.period(0)) + "; make the domain longer.");
@@ -124,7 +124,7 @@ class OutlineChecker {
       }
       return;
     }
-    const double below = -0.5 - extent.y_min, above = extent.y_max - (scene_.domain.nodes[1] - 0.5);
+    const double below = -0.5 - extent.least[1], above = extent.most[1] - (scene_.domain.nodes[1] - 0.5);
     if (!(below < 0)) stick_out(cell, "lower", below);
     if (!(above < 0)) stick_out(cell, "upper", above);
   }

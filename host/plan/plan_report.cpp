@@ -168,9 +168,7 @@ std::vector<PackedCells> packed_cells(const scene::Scene& scene) {
 }
 
 /// Closest points on others' membranes, or on a cell's own.
-bool looks_for_neighbours(const Plan& plan) {
-  return plan.has_interactions || plan.has_self_interactions;
-}
+bool looks_for_neighbours(const Plan& plan) { return plan.has_interactions || plan.has_self_interactions; }
 
 std::vector<PlannedPass> planned_passes(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;

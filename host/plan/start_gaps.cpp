@@ -19,7 +19,7 @@ namespace {
 constexpr double reach = 2;  // spacings
 
 double gap_between(const core::Membranes& cells, const core::Domain<2>& domain) {
-  const core::CellGrid<2> grid(core::boxes_of(core::bounds_of_known(cells)), reach, domain);
+  const core::CellGrid<2> grid(core::boxes_of<2>(cells), reach, domain);
   double gap = std::numeric_limits<double>::infinity();
   std::vector<int> near;
   for (int cell = 0; cell < cells.cell_count(); ++cell) {

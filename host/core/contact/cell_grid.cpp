@@ -101,13 +101,6 @@ void CellGrid<D>::append(int axis, int bin, int first, std::vector<int>& near) c
   });
 }
 
-std::vector<BoundingBox<2>> boxes_of(const std::vector<Bounds>& bounds) {
-  std::vector<BoundingBox<2>> boxes;
-  boxes.reserve(bounds.size());
-  for (const Bounds& b : bounds) boxes.push_back(box_of(b));
-  return boxes;
-}
-
 template class CellGrid<2>;
 template class CellGrid<3>;
 

@@ -41,9 +41,6 @@ class CellGrid {
   std::vector<int> cells_;  // bin by bin
 };
 
-inline BoundingBox<2> box_of(const Bounds& b) { return {{b.x_min, b.y_min}, {b.x_max, b.y_max}}; }
-std::vector<BoundingBox<2>> boxes_of(const std::vector<Bounds>& bounds);
-
 extern template class CellGrid<2>;
 extern template class CellGrid<3>;
 

@@ -47,8 +47,8 @@ ContactLaw::ContactLaw(Potential potential, std::size_t place, ContactMemory& me
       has_energy_(potential_.writes("energy")) {
   for (const StateVariable& declared : potential_.state) {
     memory.of_cell.resize(cells);
-    const std::size_t kept = memory.keep(
-        {static_cast<int>(place), potential_.id, declared.name, declared.unit, declared.initial});
+    const std::size_t kept =
+        memory.keep({static_cast<int>(place), potential_.id, declared.name, declared.unit, declared.initial});
     variables_.push_back({kept, memory.variables[kept].initial});
   }
 }

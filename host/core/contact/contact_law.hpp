@@ -49,7 +49,7 @@ struct ContactValues {
   std::vector<double> distance;             ///< positive
   std::vector<double> normal_velocity;      ///< d distance / dt
   std::vector<double> tangential_velocity;  ///< positive where the node runs counter-clockwise along its own cell
-  std::vector<double> sliding_speed;        ///< of the velocity against the other surface what is not along the distance
+  std::vector<double> sliding_speed;  ///< of the velocity against the other surface what is not along the distance
   std::vector<ContactKey> key;
 
   void clear();

@@ -18,16 +18,16 @@ struct Segment {
 };
 
 /// Segments of a cell, moved, that touch a box; in order of their left ends.
-void collect(const Membranes& membranes, const CellRange& cell, const Vec<2>& move, const Bounds& box,
+void collect(const Membranes& membranes, const CellRange& cell, const Vec<2>& move, const BoundingBox<2>& box,
              std::vector<Segment>& segments) {
   segments.clear();
   const auto node = [&](int i) -> Vec<2> { return Vec<2>(membranes.position[0][i], membranes.position[1][i]) + move; };
   for (int i = cell.first; i < cell.end(); ++i) {
     const int next = cell.next(i);
     const Segment segment{i, next, node(i), node(next)};
-    if (segment.x_min() > box.x_max || segment.x_max() < box.x_min) continue;
-    if (std::min(segment.from.y(), segment.to.y()) > box.y_max ||
-        std::max(segment.from.y(), segment.to.y()) < box.y_min) {
+    if (segment.x_min() > box.most[0] || segment.x_max() < box.least[0]) continue;
+    if (std::min(segment.from.y(), segment.to.y()) > box.most[1] ||
+        std::max(segment.from.y(), segment.to.y()) < box.least[1]) {
       continue;
     }
     segments.push_back(segment);
@@ -67,9 +67,9 @@ std::optional<Found> sweep(const std::vector<Segment>& as, const std::vector<Seg
   return std::nullopt;
 }
 
-bool contains(const Bounds& outer, const Bounds& inner) {
-  return outer.x_min <= inner.x_min && inner.x_max <= outer.x_max && outer.y_min <= inner.y_min &&
-         inner.y_max <= outer.y_max;
+bool contains(const BoundingBox<2>& outer, const BoundingBox<2>& inner) {
+  return outer.least[0] <= inner.least[0] && inner.most[0] <= outer.most[0] && outer.least[1] <= inner.least[1] &&
+         inner.most[1] <= outer.most[1];
 }
 
 /// Looks at one pair of cells and one image of the second.
@@ -80,12 +80,13 @@ class PairCheck {
   std::optional<Crossing> operator()(int a, int b, ImageShift shift) {
     const CellRange& cell = membranes_.cells[a];
     const CellRange& other = membranes_.cells[b];
-    const Vec<2> move(shift.x * domain_.period(0), shift.y * domain_.period(1));
-    const Bounds own = core::bounds(membranes_, cell);
-    Bounds moved = core::bounds(membranes_, other);
-    moved = {moved.x_min + move.x(), moved.x_max + move.x(), moved.y_min + move.y(), moved.y_max + move.y()};
-    const Bounds common{std::max(own.x_min, moved.x_min), std::min(own.x_max, moved.x_max),
-                        std::max(own.y_min, moved.y_min), std::min(own.y_max, moved.y_max)};
+    const Vec<2> move = moved_by(shift, domain_);
+    const BoundingBox<2> own = box_of<2>(membranes_, cell);
+    BoundingBox<2> moved = box_of<2>(membranes_, other), common;
+    for (int k = 0; k < 2; ++k) {
+      moved.least[k] += move[k], moved.most[k] += move[k];
+      common.least[k] = std::max(own.least[k], moved.least[k]), common.most[k] = std::min(own.most[k], moved.most[k]);
+    }
     const bool same = a == b && shift == ImageShift{};
     collect(membranes_, cell, Vec<2>::Zero(), common, own_);
     if (!same) collect(membranes_, other, move, common, other_);
@@ -116,10 +117,10 @@ class PairCheck {
 }  // namespace
 
 std::optional<Crossing> find_crossing(const Membranes& membranes, const Domain<2>& domain) {
-  const std::vector<Bounds> extent = bounds_of_known(membranes);
+  const std::vector<BoundingBox<2>> extent = boxes_of_known<2>(membranes);
   PairCheck check(membranes, domain);
   std::optional<Crossing> found;
-  const CellGrid<2> grid(boxes_of(extent), 0.0, domain);
+  const CellGrid<2> grid(extent, 0.0, domain);
   std::vector<int> near;
   for (const int a : membranes.own_cells()) {
     if (found) break;

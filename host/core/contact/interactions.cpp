@@ -69,7 +69,8 @@ Interactions<D>::Interactions(Cells& cells, std::vector<Interaction> between_cel
   for (const Interaction& interaction : interactions_) {
     const Potential& potential = interaction.potential;
     if (D == 3 && potential.reads("tangential_velocity"))
-      throw std::invalid_argument("\"" + potential.id + "\" reads a tangential velocity, which has no sign on surfaces");
+      throw std::invalid_argument("\"" + potential.id +
+                                  "\" reads a tangential velocity, which has no sign on surfaces");
     const ContactLaw& law = laws_.emplace_back(potential, laws_.size(), cells.contacts, cells.cells.size());
     remembers_ = remembers_ || law.remembers();
     needs_velocities_ = needs_velocities_ || law.reads_velocities();

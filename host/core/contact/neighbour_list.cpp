@@ -58,9 +58,9 @@ struct Candidates {
 };
 
 /// Distance between two boxes, the second moved.
-double distance(const Bounds& a, const Bounds& b, double move_x, double move_y) {
-  const double dx = std::max({0.0, b.x_min + move_x - a.x_max, a.x_min - b.x_max - move_x});
-  const double dy = std::max({0.0, b.y_min + move_y - a.y_max, a.y_min - b.y_max - move_y});
+double distance(const BoundingBox<2>& a, const BoundingBox<2>& b, double move_x, double move_y) {
+  const double dx = std::max({0.0, b.least[0] + move_x - a.most[0], a.least[0] - b.most[0] - move_x});
+  const double dy = std::max({0.0, b.least[1] + move_y - a.most[1], a.least[1] - b.most[1] - move_y});
   return std::hypot(dx, dy);
 }
 
@@ -106,7 +106,7 @@ void NeighbourList::refresh(Worker worker, const Membranes& membranes, const Seg
   const double skin = suitable_skin(membranes);
   // Every worker sorts all cells: that is quicker than to wait for one who does.
   std::vector<BoundingBox<2>> boxes;
-  for (const int cell : membranes.known_cells()) boxes.push_back(box_of(segments.bounds[cell]));
+  for (const int cell : membranes.known_cells()) boxes.push_back(segments.boxes[cell]);
   const CellGrid<2> grid(boxes, cutoffs_.largest() + 2 * skin, domain_);
   int place = cells.first_place();  // among the known cells
   for (const int cell : cells) {
@@ -131,12 +131,12 @@ void NeighbourList::list_pairs(const Membranes& membranes, int cell, const Segme
                                std::vector<int>& near) {
   CandidateList& list = lists_[cell];
   const int type = membranes.cells[cell].type;
-  const Bounds& own = segments.bounds[cell];
+  const BoundingBox<2>& own = segments.boxes[cell];
   std::sort(near.begin(), near.end(), [&](int a, int b) { return rank_[a] < rank_[b]; });
   for (const int other : near) {
     const double cutoff = cutoffs_(type, membranes.cells[other].type);
     if (!(cutoff > 0)) continue;
-    core::for_each_image(own, segments.bounds[other], cutoff + 2 * skin, domain_, [&](ImageShift shift) {
+    core::for_each_image(own, segments.boxes[other], cutoff + 2 * skin, domain_, [&](ImageShift shift) {
       if (other != cell || !(shift == ImageShift{})) list.pairs.push_back({{other, shift}, 0, 0, {0, 0}, 0, -1});
     });
   }
@@ -167,16 +167,16 @@ void NeighbourList::list_candidates(const Membranes& membranes, int cell, Pair& 
   pair.group_begin = static_cast<int>(list.groups.size());
   const std::size_t first_run = list.runs.size();
   for (int first = own.first; first < own.end(); first += group) {
-    Bounds bounds{segments.x[first], segments.x[first], segments.y[first], segments.y[first]};
+    BoundingBox<2> box{{segments.x[first], segments.y[first]}, {segments.x[first], segments.y[first]}};
     for (int k = 0; k < group; ++k) {
       const int i = std::min(first + k, own.end() - 1);
       x[k] = segments.x[i] - move_x;
       y[k] = segments.y[i] - move_y;
-      bounds.x_min = std::min(bounds.x_min, segments.x[i]), bounds.x_max = std::max(bounds.x_max, segments.x[i]);
-      bounds.y_min = std::min(bounds.y_min, segments.y[i]), bounds.y_max = std::max(bounds.y_max, segments.y[i]);
+      box.least = {std::min(box.least[0], segments.x[i]), std::min(box.least[1], segments.y[i])};
+      box.most = {std::max(box.most[0], segments.x[i]), std::max(box.most[1], segments.y[i])};
     }
     const double reach = cutoff + 2 * skin + 1e-9;
-    if (distance(bounds, segments.bounds[pair.other], move_x, move_y) > reach) continue;
+    if (distance(box, segments.boxes[pair.other], move_x, move_y) > reach) continue;
     candidates(&task);
     const auto run_begin = static_cast<int>(list.runs.size());
     for (int k = 0; k < other.count; ++k) {

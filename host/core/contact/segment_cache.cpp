@@ -11,7 +11,7 @@ struct UpdateTask {
   const double *from_x, *from_y;
   double *x, *y, *along_x, *along_y, *inverse_square;
   int first, end;
-  Bounds bounds;
+  BoundingBox<2> box;
 };
 
 struct Update {
@@ -31,10 +31,10 @@ struct Update {
       dy.store(t.along_y + i);
       select(square > S(0.0), 1.0 / square, S(0.0)).store(t.inverse_square + i);
     }
-    Bounds b{least(x_min), largest(x_max), least(y_min), largest(y_max)};
+    BoundingBox<2> b{{least(x_min), least(y_min)}, {largest(x_max), largest(y_max)}};
     for (; i < t.end; ++i) {
       const double x = t.from_x[i], y = t.from_y[i];
-      b = {min(b.x_min, x), max(b.x_max, x), min(b.y_min, y), max(b.y_max, y)};
+      b = {{min(b.least[0], x), min(b.least[1], y)}, {max(b.most[0], x), max(b.most[1], y)}};
       const int next = i + 1 == t.end ? t.first : i + 1;
       const double dx = t.from_x[next] - x, dy = t.from_y[next] - y, square = dx * dx + dy * dy;
       t.x[i] = x;
@@ -43,13 +43,13 @@ struct Update {
       t.along_y[i] = dy;
       t.inverse_square[i] = square > 0 ? 1 / square : 0.0;
     }
-    task->bounds = b;
+    task->box = b;
   }
 };
 
 }  // namespace
 
-SegmentTable::SegmentTable(const Membranes& membranes) : bounds(membranes.cells.size(), Bounds{}) {
+SegmentTable::SegmentTable(const Membranes& membranes) : boxes(membranes.cells.size()) {
   const std::size_t size = membranes.position[0].size() + margin;
   for (auto* values : {&x, &y, &along_x, &along_y, &inverse_square}) *values = PagedArray<double>(size);
 }
@@ -68,9 +68,9 @@ void SegmentTable::update(Worker worker, const Membranes& membranes) {
                     inverse_square.data(),
                     cell.first,
                     cell.end(),
-                    Bounds{}};
+                    {}};
     function(&task);
-    bounds[c] = task.bounds;
+    boxes[c] = task.box;
   }
 }
 

@@ -27,7 +27,7 @@ class SegmentTable {
   PagedArray<double> x, y;              ///< positions of the nodes
   PagedArray<double> along_x, along_y;  ///< from the node to the next one
   PagedArray<double> inverse_square;    ///< 1 / length^2 of the segment; 0 if it has no length
-  std::vector<Bounds> bounds;           ///< of the cells
+  std::vector<BoundingBox<2>> boxes;    ///< of the cells
 };
 
 /// From the closest point of a segment to a node; `along` is the segment's coordinate of that point in [0, 1].

@@ -133,9 +133,8 @@ struct SurfaceContacts::Neighbours {
         if (cutoff > 0) add(boxes[cell], surfaces, {other, shift, within, {}}, cutoff + 2 * skin, contacts.domain_);
       });
     }
-    std::sort(images.begin(), images.end(), [](const Image& a, const Image& b) {
-      return std::tie(a.other, a.shift) < std::tie(b.other, b.shift);
-    });
+    std::sort(images.begin(), images.end(),
+              [](const Image& a, const Image& b) { return std::tie(a.other, a.shift) < std::tie(b.other, b.shift); });
   }
 
   /// Those triangles of an image that lie within the reach of a box.
@@ -147,8 +146,8 @@ struct SurfaceContacts::Neighbours {
     int number = 0;
     for (const auto& [i, j, k] : surfaces.type_of(image.other).mesh.triangles()) {
       const Vec<3> a = nodes[i], b = nodes[j], c = nodes[k], center = (a + b + c) / 3, middle = center + moved;
-      const double radius = std::sqrt(
-          std::max({(a - center).squaredNorm(), (b - center).squaredNorm(), (c - center).squaredNorm()}));
+      const double radius =
+          std::sqrt(std::max({(a - center).squaredNorm(), (b - center).squaredNorm(), (c - center).squaredNorm()}));
       const Vec<3> around = Vec<3>::Constant(reach + radius);
       const int triangle = number++;
       if (!Eigen::AlignedBox3d(least - around, most + around).contains(middle)) continue;

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "base/worker.hpp"
+#include "cell_grid.hpp"
 #include "closest_points.hpp"
 #include "contact_law.hpp"
 #include "core/domain/domain.hpp"
 #include "core/domain/images.hpp"
 #include "core/membrane/displacement_watch.hpp"
 #include "core/surface/surfaces.hpp"
-#include "cell_grid.hpp"
 #include "neighbour_list.hpp"
 #include "self_reach.hpp"
 

@@ -87,8 +87,7 @@ double SurfacePatches::gap(int cell, std::span<const int> others, const std::vec
     lower(square, cell, image.other, image.moved);
     lower(square, image.other, cell, image.moved_back);
   }
-  return square < none ? std::max(std::sqrt(square), least_distance)
-                       : std::numeric_limits<double>::infinity();
+  return square < none ? std::max(std::sqrt(square), least_distance) : std::numeric_limits<double>::infinity();
 }
 
 void SurfacePatches::lower(double& square, int from, int to, const Vec<3>& moved) {

@@ -40,15 +40,15 @@ void add_piece(double* row, int& begin, int& end, double a, double b, double ris
 }  // namespace
 
 void cover(const Membranes& membranes, const CellRange& cell, AreaFraction& fraction) {
-  const Bounds box = core::bounds(membranes, cell);
+  const BoundingBox<2> box = box_of<2>(membranes, cell);
   fraction.width = fraction.height = 0;
   if (!box.usable()) return;
   // Node n's unit square is [n - 1/2, n + 1/2]: half a spacing later, it is the cell between two integers.
-  fraction.x0 = core::floor_int(box.x_min + 0.5) - window_margin;
-  fraction.y0 = core::floor_int(box.y_min + 0.5) - window_margin;
-  const int width = core::floor_int(box.x_max + 0.5) - fraction.x0 + 1 + window_margin;
-  const int height = core::floor_int(box.y_max + 0.5) - fraction.y0 + 1 + window_margin;
-  if (static_cast<double>(width) * height > 1e8) return;  // blown up, see Bounds::usable
+  fraction.x0 = core::floor_int(box.least[0] + 0.5) - window_margin;
+  fraction.y0 = core::floor_int(box.least[1] + 0.5) - window_margin;
+  const int width = core::floor_int(box.most[0] + 0.5) - fraction.x0 + 1 + window_margin;
+  const int height = core::floor_int(box.most[1] + 0.5) - fraction.y0 + 1 + window_margin;
+  if (static_cast<double>(width) * height > 1e8) return;  // blown up, see BoundingBox::usable
   fraction.width = width;
   fraction.height = height;
   fraction.value.assign(static_cast<std::size_t>(width) * height, 0.0);

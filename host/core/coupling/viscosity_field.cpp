@@ -86,10 +86,10 @@ template <class T>
 void ViscosityField<T>::find_reach(const Membranes& membranes, const CellRange& cell, Reach& reach) const {
   Rows& reached = reach.reached;
   reached.columns.clear();
-  const Bounds box = core::bounds(membranes, cell);
+  const BoundingBox<2> box = box_of<2>(membranes, cell);
   if (!box.usable()) return;
   const Rows& covered = reach.covered;
-  int first = core::floor_int(box.y_min) - 2 - margin_, last = core::floor_int(box.y_max) + 3 + margin_;
+  int first = core::floor_int(box.least[1]) - 2 - margin_, last = core::floor_int(box.most[1]) + 3 + margin_;
   if (!covered.columns.empty()) {
     first = std::min(first, covered.first);
     last = std::max(last, covered.first + static_cast<int>(covered.columns.size()) - 1);

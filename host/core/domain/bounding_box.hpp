@@ -13,7 +13,8 @@ template <int D>
 struct BoundingBox {
   std::array<double, D> least, most;
 
-  /// False for the positions of a simulation that has just blown up (Bounds::usable).
+  /// False for the positions of a simulation that has just blown up (not finite, or absurdly large). The checks of the
+  /// run will report them; until then nothing may crash or hang on them.
   [[nodiscard]] bool usable() const {
     constexpr double far = 1e9, large = 1e5;
     for (int k = 0; k < D; ++k) {

@@ -165,8 +165,7 @@ struct CellNodes {
 
 /// The box around a cell's nodes; its numbers are none where one of theirs is.
 template <int D>
-BoundingBox<D> box_of(const CellNodes& nodes, int cell) {
-  const CellRange& range = nodes.cells[cell];
+BoundingBox<D> box_of(const CellNodes& nodes, const CellRange& range) {
   BoundingBox<D> box;
   for (int k = 0; k < D; ++k) {
     double least = INFINITY, most = -INFINITY, zero = 0;  // zero becomes NaN with the first place that is not finite
@@ -178,6 +177,10 @@ BoundingBox<D> box_of(const CellNodes& nodes, int cell) {
     box.least[k] = least + zero, box.most[k] = most + zero;
   }
   return box;
+}
+template <int D>
+BoundingBox<D> box_of(const CellNodes& nodes, int cell) {
+  return box_of<D>(nodes, nodes.cells[cell]);
 }
 
 /// The boxes of all cells.

@@ -74,26 +74,6 @@ Vec<2> centroid(const Membranes& membranes, const CellRange& cell) {
   return origin + sum.first / sum.area;
 }
 
-Bounds bounds(const Membranes& membranes, const CellRange& cell) {
-  const auto first = static_cast<std::size_t>(cell.first);
-  Bounds b{membranes.position[0][first], membranes.position[0][first], membranes.position[1][first],
-           membranes.position[1][first]};
-  double zero = 0;  // becomes NaN with the first position that is not finite
-  for (std::size_t i = first; i < static_cast<std::size_t>(cell.end()); ++i) {
-    const double x = membranes.position[0][i], y = membranes.position[1][i];
-    b = {std::min(b.x_min, x), std::max(b.x_max, x), std::min(b.y_min, y), std::max(b.y_max, y)};
-    zero += 0 * x + 0 * y;
-  }
-  return {b.x_min + zero, b.x_max + zero, b.y_min + zero, b.y_max + zero};
-}
-
-std::vector<Bounds> bounds_of_known(const Membranes& membranes) {
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  std::vector<Bounds> all(membranes.cells.size(), Bounds{none, none, none, none});
-  for (const int c : membranes.known_cells()) all[c] = bounds(membranes, membranes.cells[c]);
-  return all;
-}
-
 InertiaEllipse inertia_ellipse(const Membranes& membranes, const CellRange& cell) {
   const Moments sum = moments(membranes, cell, centroid(membranes, cell));
   const double xx = sum.xx / sum.area, xy = sum.xy / sum.area, yy = sum.yy / sum.area;
@@ -114,9 +94,10 @@ double marker_angle(const Membranes& membranes, const CellRange& cell) {
 namespace {
 
 /// Smallest square distance from a point to an outline with these bounds; `best` if it is not below that.
-double nearest(const Membranes& membranes, const CellRange& cell, const Bounds& box, const Vec<2>& point, double best) {
-  const double dx = std::max({0.0, box.x_min - point.x(), point.x() - box.x_max});
-  const double dy = std::max({0.0, box.y_min - point.y(), point.y() - box.y_max});
+double nearest(const Membranes& membranes, const CellRange& cell, const BoundingBox<2>& box, const Vec<2>& point,
+               double best) {
+  const double dx = std::max({0.0, box.least[0] - point.x(), point.x() - box.most[0]});
+  const double dy = std::max({0.0, box.least[1] - point.y(), point.y() - box.most[1]});
   if (!(dx * dx + dy * dy <= best)) return best;
   for (int j = cell.first; j < cell.end(); ++j) {
     best = std::min(best, square_distance(point, node(membranes, j), node(membranes, cell.next(j))));
@@ -127,7 +108,7 @@ double nearest(const Membranes& membranes, const CellRange& cell, const Bounds& 
 /// The same from the nodes of `a` moved by `move` to the outline of `b`.
 double nearest_node(const Membranes& membranes, const CellRange& a, const CellRange& b, const Vec<2>& move,
                     double best) {
-  const Bounds box = bounds(membranes, b);
+  const BoundingBox<2> box = box_of<2>(membranes, b);
   for (int i = a.first; i < a.end(); ++i) best = nearest(membranes, b, box, node(membranes, i) + move, best);
   return best;
 }
@@ -147,11 +128,11 @@ double outline_distance(const Membranes& membranes, const CellRange& a, const Ce
 double facing_length(const Membranes& membranes, const CellRange& a, const CellRange& b, ImageShift shift,
                      const Domain<2>& domain, double reach) {
   const Vec<2> move(shift.x * domain.period(0), shift.y * domain.period(1));
-  const Bounds bounds_b = bounds(membranes, b);
+  const BoundingBox<2> box = box_of<2>(membranes, b);
   const std::vector<double>& weight = membranes.type_of(a).rest_weight;
   double length = 0;
   for (int i = a.first; i < a.end(); ++i) {
-    const bool near = nearest(membranes, b, bounds_b, node(membranes, i) - move, reach * reach) < reach * reach;
+    const bool near = nearest(membranes, b, box, node(membranes, i) - move, reach * reach) < reach * reach;
     if (near) length += weight[i - a.first];
   }
   return length;
@@ -161,7 +142,7 @@ double smallest_gap(const Membranes& membranes, int a, int b, const Domain<2>& d
   const CellRange& cell = membranes.cells[a];
   const CellRange& other = membranes.cells[b];
   double gap = std::numeric_limits<double>::infinity();
-  for_each_image(bounds(membranes, cell), bounds(membranes, other), limit, domain, [&](ImageShift shift) {
+  for_each_image(box_of<2>(membranes, cell), box_of<2>(membranes, other), limit, domain, [&](ImageShift shift) {
     if (a == b && shift == ImageShift{}) return;
     gap = std::min(gap, outline_distance(membranes, cell, other, shift, domain, std::min(gap, limit)));
   });

@@ -22,10 +22,6 @@ struct StretchRange {
 StretchRange stretch_range(const Membranes& membranes, const CellRange& cell);
 /// Centroid of the enclosed area.
 Vec<2> centroid(const Membranes& membranes, const CellRange& cell);
-/// Not a number if a position is not finite.
-Bounds bounds(const Membranes& membranes, const CellRange& cell);
-/// Of every cell; of those that this rank does not know, no numbers.
-std::vector<Bounds> bounds_of_known(const Membranes& membranes);
 
 /// Ellipse with the same second moments of area as the polygon.
 struct InertiaEllipse {

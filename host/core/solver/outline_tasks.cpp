@@ -43,8 +43,8 @@ OutlineTasks<T>::OutlineTasks(const SolverSetup& setup, Membranes& membranes, Fl
         std::make_unique<WallContacts<2>>(membranes_, setup.wall_interactions, setup.domain, setup.tube_radius);
   coupling_.reserve(membranes_);
   if (ghosts) {
-    exchange_ = std::make_unique<CellExchange<2>>(*std::move(ghosts),
-                                                  interactions_ && interactions_->needs_velocities());
+    exchange_ =
+        std::make_unique<CellExchange<2>>(*std::move(ghosts), interactions_ && interactions_->needs_velocities());
   }
   locate(Worker{}, Whose::own);
   locate(Worker{}, Whose::others);

@@ -20,7 +20,7 @@ rouleau::core::Potential bridging(double on_rate = on, double off_rate = off, do
 }
 
 Interactions<2> bonds_between(Membranes& m, rouleau::core::Potential bond,
-                                core::Domain<2> domain = periodic_box(10000)) {
+                              core::Domain<2> domain = periodic_box(10000)) {
   return {m, {{{0, 0}, std::move(bond)}}, domain};
 }
 

@@ -181,13 +181,13 @@ TEST_CASE("bins find every cell and image within reach, in boxes of any size, ov
     const auto length = [&](int most) { return 30 + static_cast<int>(most * uniform(random)); };
     const core::Domain<2> domain = trial % 2 == 0 ? periodic_box(length(400)) : periodic_box(length(400), length(300));
     const double reach = 1 + 20 * uniform(random), largest = 5 + 50 * uniform(random);
-    std::vector<Bounds> bounds;
+    std::vector<BoundingBox<2>> boxes;
     for (int c = 0; c < 60; ++c) {
       const double x = (3 * uniform(random) - 1) * domain.period(0), y = (3 * uniform(random) - 1) * 200;
-      bounds.push_back({x, x + largest * uniform(random), y, y + largest * uniform(random)});
+      boxes.push_back({{x, y}, {x + largest * uniform(random), y + largest * uniform(random)}});
     }
-    bounds[17].x_min = std::nan("");
-    const CellGrid<2> grid(boxes_of(bounds), reach, domain);
+    boxes[17].least[0] = std::nan("");
+    const CellGrid<2> grid(boxes, reach, domain);
     std::vector<int> near;
     for (int a = 0; a < 60; ++a) {
       grid.find(a, near);
@@ -196,8 +196,7 @@ TEST_CASE("bins find every cell and image within reach, in boxes of any size, ov
       found += static_cast<long>(near.size());
       for (int b = 0; b < 60; ++b) {
         bool images = false;
-        for_each_image(bounds[static_cast<std::size_t>(a)], bounds[static_cast<std::size_t>(b)], reach, domain,
-                       [&](ImageShift) { images = true; });
+        for_each_image(boxes[a], boxes[b], reach, domain, [&](ImageShift) { images = true; });
         if (images) REQUIRE(std::binary_search(near.begin(), near.end(), b));
         pairs += images ? 1 : 0;
       }
@@ -238,9 +237,9 @@ TEST_CASE("every image is visited from both cells") {
   long visits = 0;
   for (int trial = 0; trial < 20000; ++trial) {
     const double ax = uniform(random), ay = uniform(random), bx = uniform(random), by = uniform(random);
-    const Bounds a{ax, ax + 40, ay, ay + 13}, b{bx, bx + 13, by, by + 40};
-    // Bounds that touch exactly, too: the reach is a difference of coordinates.
-    const double reach = trial % 2 == 0 ? 19 : std::abs(b.x_min - a.x_max);
+    const BoundingBox<2> a{{ax, ay}, {ax + 40, ay + 13}}, b{{bx, by}, {bx + 13, by + 40}};
+    // Boxes that touch exactly, too: the reach is a difference of coordinates.
+    const double reach = trial % 2 == 0 ? 19 : std::abs(b.least[0] - a.most[0]);
     const core::Domain<2> domain = periodic_box(60 + trial % 7, trial % 3 == 0 ? 0 : 77);
     std::vector<ImageShift> there, back;
     for_each_image(a, b, reach, domain, [&](ImageShift shift) { there.push_back(shift); });

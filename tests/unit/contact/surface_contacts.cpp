@@ -236,7 +236,7 @@ TEST_CASE("spheres around the same centre have the energy of their areas at the 
     add_cell(s, 0, {12, 10, 11});
     add_cell(s, 1, {12, 10, 11}, Eigen::AngleAxisd(0.3, Vec<3>(1, 2, 3).normalized()).toRotationMatrix());
     Interactions<3> forces(s, {{{0, 1}, test::spring_potential(0.5, 1.0, 4)}},
-                               Domain<3>{{24, 24, 24}, {true, true, true}});
+                           Domain<3>{{24, 24, 24}, {true, true, true}});
     run(forces, s);
     const double exact = 0.25 * (0.5 * 0.5 - 3 * 3) * 4 * std::numbers::pi * (36 + 7.5 * 7.5) / 2;
     errors.push_back(std::abs(forces.energy(s) / exact - 1));

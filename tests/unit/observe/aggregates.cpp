@@ -103,7 +103,7 @@ TEST_CASE(
         const CellRange &cell = m.cells[a], &other = m.cells[b];
         gap = std::min(gap, smallest_gap(m, a, b, domain, 200));  // no gap is as large
         if (b < a) continue;
-        for_each_image(bounds(m, cell), bounds(m, other), reach, domain, [&](ImageShift shift) {
+        for_each_image(box_of<2>(m, cell), box_of<2>(m, other), reach, domain, [&](ImageShift shift) {
           if (a == b && (shift.y < 0 || (shift.y == 0 && shift.x <= 0))) return;
           const double distance = outline_distance(m, cell, other, shift, domain, reach);
           if (distance < reach)
