@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "core/contact/interactions.hpp"
 #include "core/fluid/node_mask.hpp"
 #include "core/solver/ghost_cells.hpp"
 #include "plan/solver_setup.hpp"

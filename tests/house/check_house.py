@@ -32,7 +32,7 @@ UNITS_IN_CIRCLES = {"base": 2, "json": 2, "units": 2, "scene": 2, "plugin": 9, "
 LONG_LINES = 509
 LONG_FUNCTIONS = {"accuracy/companions": 103, "core/fluid/energetics": 130, "observe/observables": 183,
                   "plan/plan_report": 83, "plan/stability_limits": 236, "report/report_data": 105}
-LONG_UNITS = {"core/contact/surface_contacts": 634, "core/coupling/surface_coupling": 520, "core/fluid/fluid": 988,
+LONG_UNITS = {"core/coupling/surface_coupling": 520, "core/fluid/fluid": 988,
               "core/solver/cell_exchange": 524, "hdf5/hdf5_file": 587, "observe/observables": 596, "plan/numerics_auto": 710,
               "plan/plan_report": 507, "plan/stability_limits": 697, "run/checkpoint": 454, "run/simulation": 669,
               "scene/scene": 706, "shape/rigid_surface": 451}

@@ -10,28 +10,6 @@ namespace rouleau::core {
 
 namespace {
 
-/// The largest cutoff for each pair of types.
-Cutoffs pair_cutoffs(const CellNodes& cells, const std::vector<Interaction>& interactions) {
-  int types = 1;
-  for (const CellRange& cell : cells.cells) types = std::max(types, cell.type + 1);
-  for (const Interaction& interaction : interactions)
-    types = std::max({types, interaction.between[0] + 1, interaction.between[1] + 1});
-  Cutoffs cutoffs(types);
-  for (const auto& [between, potential] : interactions) cutoffs.raise(between[0], between[1], cutoff_of(potential));
-  return cutoffs;
-}
-
-/// The largest of each type; none: no cell touches itself.
-std::vector<double> self_cutoffs(std::size_t types, const std::vector<SelfInteraction>& within_cells) {
-  std::vector<double> cutoffs(within_cells.empty() ? 0 : types, 0.0);
-  for (const auto& [type, potential] : within_cells) {
-    if (!potential.state.empty() || potential.reads("normal_velocity") || reads_sliding(potential))
-      throw std::invalid_argument("a potential within a membrane depends on the distance alone: " + potential.id);
-    cutoffs[type] = std::max(cutoffs[type], cutoff_of(potential));
-  }
-  return cutoffs;
-}
-
 bool acts_between(const Interaction& interaction, int a, int b) {
   return (interaction.between[0] == a && interaction.between[1] == b) ||
          (interaction.between[0] == b && interaction.between[1] == a);
@@ -49,12 +27,6 @@ int node_of(const ContactList& list, std::size_t i) { return list.node[i]; }
 int node_of(const ContactsOf<3>::List& list, std::size_t i) { return list.contacts[i].node; }
 
 }  // namespace
-
-double contact_reach(const std::vector<Interaction>& interactions) {
-  double largest = -1;
-  for (const Interaction& interaction : interactions) largest = std::max(largest, cutoff_of(interaction.potential));
-  return interactions.empty() ? 0 : list_reach(largest);
-}
 
 template <int D>
 Interactions<D>::Interactions(Cells& cells, std::vector<Interaction> between_cells, const Domain<D>& domain,

@@ -11,12 +11,10 @@
 #include "core/domain/ranks.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/surface/surfaces.hpp"
+#include "cutoffs.hpp"
 #include "surface_contacts.hpp"
 
 namespace rouleau::core {
-
-/// Cells do not act on each other from further away, with lists that are as old as they may be; 0: they do not at all.
-double contact_reach(const std::vector<Interaction>& interactions);
 
 /// What acts on one node of another cell.
 struct Reaction {

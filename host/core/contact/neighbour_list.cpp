@@ -10,9 +10,7 @@ namespace rouleau::core {
 
 namespace {
 
-constexpr double thinnest_skin = 0.01, thickest_skin = 0.5, usual_skin = 0.2;
-constexpr double lifetime = 120;  // steps that lists should last
-constexpr int bridged = 2;        // segments between two runs that are searched rather than stepped over
+constexpr int bridged = 2;  // segments between two runs that are searched rather than stepped over
 
 /// One group of nodes against all segments of the other cell.
 struct CandidateTask {
@@ -65,23 +63,6 @@ double distance(const BoundingBox<2>& a, const BoundingBox<2>& b, double move_x,
 }
 
 }  // namespace
-
-double suitable_skin(const CellNodes& cells) {
-  if (cells.largest_step.empty()) return usual_skin;  // nobody keeps account of the steps
-  double skin = thinnest_skin;                        // also where a step is no number: the run's own checks will tell
-  for (const int c : cells.known_cells()) skin = std::max(skin, lifetime * cells.largest_step[c]);
-  return std::min(std::max(skin, lifetime * cells.largest_step_of_others), thickest_skin);
-}
-
-double list_reach(double cutoff) { return cutoff + 2 * thickest_skin; }
-
-void Cutoffs::raise(int a, int b, double cutoff) {
-  const double value = std::max((*this)(a, b), cutoff);
-  cutoff_[static_cast<std::size_t>(a) * types_ + b] = value;
-  cutoff_[static_cast<std::size_t>(b) * types_ + a] = value;
-}
-
-double Cutoffs::largest() const { return *std::max_element(cutoff_.begin(), cutoff_.end()); }
 
 NeighbourList::NeighbourList(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain)
     : cutoffs_(std::move(cutoffs)),

@@ -8,27 +8,10 @@
 #include "core/domain/images.hpp"
 #include "core/membrane/displacement_watch.hpp"
 #include "core/membrane/membranes.hpp"
+#include "cutoffs.hpp"
 #include "segment_cache.hpp"
 
 namespace rouleau::core {
-
-/// Largest distance at which cells of two types interact, symmetric; 0: they do not.
-class Cutoffs {
- public:
-  explicit Cutoffs(int types) : types_(types), cutoff_(static_cast<std::size_t>(types) * types, 0.0) {}
-  void raise(int a, int b, double cutoff);
-  [[nodiscard]] double largest() const;
-  [[nodiscard]] double operator()(int a, int b) const { return cutoff_[static_cast<std::size_t>(a) * types_ + b]; }
-
- private:
-  int types_;
-  std::vector<double> cutoff_;
-};
-
-/// Skin for lists that are made now, by the speed at which nodes move.
-double suitable_skin(const CellNodes& cells);
-/// The largest distance between nodes at which lists with the thickest skin are made. `cutoff`: the largest one.
-double list_reach(double cutoff);
 
 /// Ordered pair: nodes of a cell against the outline of `other` moved by `shift` periods.
 struct CellPair {

@@ -98,102 +98,22 @@ void SurfaceContacts::forget(const Surfaces& surfaces, std::span<const Range> no
   surfaces.forget_unknown_of(lists_);
 }
 
-/// Images of other cells' triangles, and a cell's own, that may lie within the reach of some node of the cell.
-struct SurfaceContacts::Neighbours {
-  struct Triangle {
-    int triangle;
-    Vec<3> middle;  ///< of the image
-    double radius;  ///< no corner lies farther from it
-    double around;  ///< reach plus that
-  };
-  /// Triangles, or patches of them, [begin, end), and a box that holds all places that one of them is near.
-  struct Part {
-    std::size_t begin, end;
-    Eigen::AlignedBox3d reached;
-  };
-  /// The patches of one image of a cell.
-  struct Image {
-    int other;
-    ImageShift shift;
-    bool within;  ///< the cell's own surface
-    Part part;
-    std::vector<Part> near{};  ///< those of its patches that the chosen place is near
-  };
-  std::vector<Triangle> triangles;
-  std::vector<Part> patches;  // of triangles that follow each other, which lie side by side in most meshes
-  std::vector<Image> images;  // by cell, then by shift
-
-  Neighbours(int cell, const std::vector<int>& near, const std::vector<BoundingBox<3>>& boxes, const Surfaces& surfaces,
-             const SurfaceContacts& contacts, double skin) {
-    for (const int other : near) {
-      const double reach = contacts.cutoff(surfaces, cell, other, false) + 2 * skin + slack;
-      for_each_image(boxes[cell], boxes[other], reach, contacts.domain_, [&](ImageShift shift) {
-        const bool within = other == cell && shift == ImageShift{};
-        const double cutoff = contacts.cutoff(surfaces, cell, other, within);
-        if (cutoff > 0) add(boxes[cell], surfaces, {other, shift, within, {}}, cutoff + 2 * skin, contacts.domain_);
-      });
-    }
-    std::sort(images.begin(), images.end(),
-              [](const Image& a, const Image& b) { return std::tie(a.other, a.shift) < std::tie(b.other, b.shift); });
-  }
-
-  /// Those triangles of an image that lie within the reach of a box.
-  void add(const BoundingBox<3>& box, const Surfaces& surfaces, Image image, double reach, const Domain<3>& domain) {
-    constexpr std::size_t patch_size = 16;
-    const Vec<3> least(box.least.data()), most(box.most.data()), moved = moved_by(image.shift, domain);
-    const Nodes nodes = surfaces.nodes(image.other);
-    image.part = {patches.size(), patches.size(), {}};
-    int number = 0;
-    for (const auto& [i, j, k] : surfaces.type_of(image.other).mesh.triangles()) {
-      const Vec<3> a = nodes[i], b = nodes[j], c = nodes[k], center = (a + b + c) / 3, middle = center + moved;
-      const double radius =
-          std::sqrt(std::max({(a - center).squaredNorm(), (b - center).squaredNorm(), (c - center).squaredNorm()}));
-      const Vec<3> around = Vec<3>::Constant(reach + radius);
-      const int triangle = number++;
-      if (!Eigen::AlignedBox3d(least - around, most + around).contains(middle)) continue;
-      if (image.part.end == image.part.begin || patches.back().end - patches.back().begin == patch_size) {
-        patches.push_back({triangles.size(), triangles.size(), {}});
-        ++image.part.end;
-      }
-      triangles.push_back({triangle, middle, radius, around[0]});
-      ++patches.back().end;
-      patches.back().reached.extend(Eigen::AlignedBox3d(middle - around, middle + around));
-      image.part.reached.extend(patches.back().reached);
-    }
-    if (image.part.end > image.part.begin) images.push_back(std::move(image));
-  }
-
-  /// Chooses a place that for_near() is about.
-  void choose(const Eigen::AlignedBox3d& box) {
-    for (Image& image : images) {
-      image.near.clear();
-      if (!image.part.reached.intersects(box)) continue;
-      for (std::size_t p = image.part.begin; p < image.part.end; ++p) {
-        if (patches[p].reached.intersects(box)) image.near.push_back(patches[p]);
-      }
-    }
-  }
-  /// Calls function(triangle, distance) for an image's triangles that are near a place in the chosen box; `distance`: of
-  /// their middles.
-  template <class Function>
-  void for_near(const Vec<3>& place, const Image& image, Function function) const {
-    for (const Part& patch : image.near) {
-      if (!patch.reached.contains(place)) continue;
-      for (std::size_t t = patch.begin; t < patch.end; ++t) {
-        const double square = (place - triangles[t].middle).squaredNorm();
-        if (square <= triangles[t].around * triangles[t].around) function(triangles[t], std::sqrt(square));
-      }
-    }
-  }
-};
-
 void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const std::vector<int>& near,
                                       const std::vector<BoundingBox<3>>& boxes, double skin) {
   CandidateList& list = lists_[cell];
   const CellRange& own = surfaces.cells[cell];
   const auto place_of = [&](int node) { return vector_at<3>(surfaces.position, node); };
-  Neighbours neighbours(cell, near, boxes, surfaces, *this, skin);
-  for (const Neighbours::Image& image : neighbours.images)
+  NearTriangles triangles;
+  for (const int other : near) {
+    const double reach = cutoff(surfaces, cell, other, false) + 2 * skin + slack;
+    for_each_image(boxes[cell], boxes[other], reach, domain_, [&](ImageShift shift) {
+      const bool within = other == cell && shift == ImageShift{};
+      const double most = cutoff(surfaces, cell, other, within);
+      if (most > 0) triangles.add(boxes[cell], {other, shift, within}, most + 2 * skin, surfaces, domain_);
+    });
+  }
+  triangles.sort_images();
+  for (const NearTriangles::Image& image : triangles.images())
     list.images.push_back({image.other, image.shift, image.within, 0, nullptr, moved_by(image.shift, domain_), 0, 0});
   std::vector<Candidate>& fresh = list.fresh;
   for (int node = own.first; node < own.end(); ++node) {
@@ -202,17 +122,17 @@ void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const 
     if ((node - own.first) % together == 0) {
       Eigen::AlignedBox3d box;
       for (int i = node; i < std::min(node + together, own.end()); ++i) box.extend(place_of(i));
-      neighbours.choose(box);
+      triangles.choose(box);
     }
     const Vec<3> place = place_of(node);
-    for (std::size_t i = 0; i < neighbours.images.size(); ++i) {
-      const Neighbours::Image& image = neighbours.images[i];
+    for (std::size_t i = 0; i < triangles.images().size(); ++i) {
+      const NearTriangles::Image& image = triangles.images()[i];
       if (image.near.empty()) continue;
       fresh.clear();
       const bool within = list.images[i].within;
       // A triangle's middle is no nearer than the triangle, and farther away by its radius at most.
       double nearest = std::numeric_limits<double>::infinity();
-      neighbours.for_near(place, image, [&](const Neighbours::Triangle& triangle, double distance) {
+      triangles.for_near(place, image, [&](const NearTriangles::Triangle& triangle, double distance) {
         if (within && !self_reach_[own.type]->allows(node - own.first, triangle.triangle)) return;
         nearest = std::min(nearest, distance);
         fresh.push_back({rounded_down(std::max(0.0, distance - triangle.radius)), triangle.triangle});

@@ -16,7 +16,8 @@
 #include "core/domain/images.hpp"
 #include "core/membrane/displacement_watch.hpp"
 #include "core/surface/surfaces.hpp"
-#include "neighbour_list.hpp"
+#include "cutoffs.hpp"
+#include "near_triangles.hpp"
 #include "self_reach.hpp"
 
 namespace rouleau::core {
@@ -114,7 +115,6 @@ class SurfaceContacts {
     /// What is to be looked at next.
     std::span<Candidate> next(const Search& search);
   };
-  struct Neighbours;
 
   static constexpr int none = std::numeric_limits<int>::max();
 

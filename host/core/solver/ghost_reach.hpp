@@ -1,6 +1,7 @@
 // How near a cell has to come for another rank to be told of it.
 #pragma once
 
+#include "core/contact/cutoffs.hpp"
 #include "solver_setup.hpp"
 
 namespace rouleau::core {

@@ -8,7 +8,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/contact/interactions.hpp"
 #include "core/domain/halo.hpp"
 #include "core/fluid/velocity_set.hpp"
 #include "core/membrane/membranes.hpp"
