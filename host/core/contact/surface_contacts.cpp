@@ -6,6 +6,8 @@
 #include <limits>
 #include <tuple>
 
+#include "cell_grid.hpp"
+
 namespace rouleau::core {
 
 namespace {

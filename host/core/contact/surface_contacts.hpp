@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/worker.hpp"
-#include "cell_grid.hpp"
 #include "closest_points.hpp"
 #include "contact_law.hpp"
 #include "core/domain/domain.hpp"

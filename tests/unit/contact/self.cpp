@@ -131,6 +131,17 @@ TEST_CASE(
   CHECK(force_sums(alone).size > 0);
 }
 
+TEST_CASE("of several potentials within a membrane the longest cutoff says which parts may touch") {
+  Membranes one = flat_cell(60, 3), both = one;
+  Interactions<2> shorter = within(one, repulsion(0.3, 4));
+  Interactions<2> with_longer(both, {}, periodic_box(1000), {{0, repulsion(0.3, 4)}, {0, repulsion(1e-30, 10)}});
+  run(shorter, one), run(with_longer, both);
+  // Along the outline a node of the lower face at x is 2 x + 3 pi/2 away from the one above it.
+  CHECK(std::abs(one.force[1][3]) > 1e-3);
+  CHECK(std::abs(both.force[1][3]) < 1e-20);
+  CHECK(both.force[1][30] == Approx(one.force[1][30]).epsilon(1e-12));
+}
+
 TEST_CASE("what remembers or looks at velocities does not act within a membrane") {
   Membranes m = biconcave_cells({{40, 30, 0}});
   const core::Potential bonds = potential("bridging", {0.7, 0.3, 2.5, 0.02, 0.03, 0.4, 0.9, 8});
