@@ -16,6 +16,7 @@ function(rouleau_add_transport name mpi)
 endfunction()
 
 if(ROULEAU_MPI)
+  find_package(PkgConfig QUIET)
   if(PkgConfig_FOUND)
     pkg_check_modules(OpenMPI QUIET IMPORTED_TARGET ompi-c)
     pkg_check_modules(MPICH QUIET IMPORTED_TARGET mpich)

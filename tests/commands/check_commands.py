@@ -498,8 +498,7 @@ class Commands_do_what_they_say(Case):
 
         (b / "summary.json").unlink()
         for arguments, words in (((a, b), (str(b), "has no summary.json")), ((a, self.path / "none"), (str(self.path / "none"), "is no directory")),
-                                 ((a,), ("2 to 12 runs", "1 was given")), ((a,) * 13, ("2 to 12 runs", "13 were given")),
-                                 ((a, a, "--frames"), ("--compare and --frames",)), ((a, a, "--strains", "1"), ("--strains is for --frames",))):
+                                 ((a,), ("2 to 12 runs", "1 was given")), ((a,) * 13, ("2 to 12 runs", "13 were given"))):
             self.assert_stops(self.rouleau.run("report", "--compare", *arguments, cwd=self.path), 2, *words)
         self.assert_stops(self.rouleau.run("report", a, a), 2, "takes one directory", "--compare")
         self.assertEqual(self.rouleau.run("report", a, "--out", out).stdout, f"{out}\n")
@@ -507,61 +506,6 @@ class Commands_do_what_they_say(Case):
         for empty in (("report", a, "--out", ""), ("run", SCENE, "--out", ""), ("run", SCENE, "--lock", "")):
             self.assert_stops(self.rouleau.run(*empty, cwd=self.path), 2, f"{empty[-2]} is empty")
         self.assert_stops(self.rouleau.run("report", "--compare", a, a, "--out", self.path / "none/c.html"), 4, "none/c.html")
-
-    def test_frames_are_pictures_of_chosen_strains(self):
-        out = self.path / "run"
-        result = self.rouleau.run("run", SCENE, "--out", out, "--quiet", "--set", "/stages/0/duration=0.02", "--set",
-                                  "/stages/1/strain=0.5", "--set", "/output/cells/strain=0.1")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        draw = self.rouleau.root / "libexec/rouleau/draw-frames"
-        self.assert_stops(self.rouleau.run("report", out, "--frames"), 4, str(draw), "libcairo2-dev")
-        built = PROGRAM.parent.parent / "libexec/rouleau/draw-frames"
-        if not built.exists():
-            self.skipTest("this build has no cairo: frames are not drawn")
-        draw.parent.mkdir(parents=True)
-        shutil.copy(built, draw)
-        mapped = subprocess.run(["ldd", self.rouleau.program], capture_output=True, text=True).stdout
-        self.assertNotIn("cairo", mapped)
-
-        def pictures(folder):
-            for file in folder.glob("*.png"):
-                self.assertEqual(file.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
-                self.assertEqual(file.read_bytes()[-8:-4], b"IEND")
-            return sorted(f.name for f in folder.iterdir() if f.suffix == ".png")
-
-        result = self.rouleau.run("report", out, "--frames", "--strains", "0,0.3", "--strains", "0.5")
-        self.assertEqual(result.returncode, 0, result.stderr)
-        frames = self.path / "run-frames"
-        self.assertEqual(pictures(frames), ["01-strain-0.png", "02-strain-0.3.png", "03-strain-0.5.png", "figure.png"])
-        self.assertEqual((frames / "figure.pdf").read_bytes()[:5], b"%PDF-")
-        self.assertIn("<svg", (frames / "figure.svg").read_text()[:200])
-        self.assertTrue(result.stdout.startswith(f"{frames}/01-strain-0.png\n"), result.stdout)
-        if shutil.which("ffmpeg"):
-            self.assertEqual((frames / "frames.mp4").read_bytes()[4:8], b"ftyp")
-            self.assertEqual(result.stdout.splitlines()[-1], f"{frames}/frames.mp4")
-        self.assertFalse([f for f in frames.iterdir() if f.name.startswith(".")], "something half written is left")
-        self.assertEqual(self.rouleau.run("report", f"{out}/", "--frames", "--out", self.path / "six").returncode, 0)
-        self.assertEqual(len(pictures(self.path / "six")), 7)
-
-        no_ffmpeg = subprocess.run([self.rouleau.program, "report", out, "--frames", "--out", self.path / "silent"], capture_output=True,
-                                   text=True, env={**os.environ, "PATH": str(self.path)})
-        self.assertEqual(no_ffmpeg.returncode, 0, no_ffmpeg.stderr)
-        self.assertIn("no video, because there is no ffmpeg", no_ffmpeg.stdout)
-        (self.path / "ffmpeg").write_text("#!/bin/sh\necho it will not do >&2\nexit 1\n")
-        (self.path / "ffmpeg").chmod(0o755)
-        broken = subprocess.run([self.rouleau.program, "report", out, "--frames", "--out", self.path / "broken"], capture_output=True,
-                                text=True, env={**os.environ, "PATH": f"{self.path}:/bin"})
-        self.assertEqual(broken.returncode, 4)
-        self.assertIn("it will not do", broken.stderr)
-        self.assertFalse([f for f in (self.path / "broken").iterdir() if "mp4" in f.name])
-
-        for strains, words in (("0,40", ("no strain 40", "from 0 to 0.5")), ("0,x", ('"x" is no strain',)), ("-1", ('"-1" is no strain',)), ("1,", ('"" is no strain',))):
-            self.assert_stops(self.rouleau.run("report", out, "--frames", f"--strains={strains}"), 2, *words)
-        self.assert_stops(self.rouleau.run("report", self.path / "none", "--frames"), 2, "none", "does not exist")
-        self.assert_stops(self.rouleau.run("report", self.path, "--frames"), 2, str(self.path), "is no run's directory")
-        file = self.path / "file"
-        file.write_text("")
-        self.assert_stops(self.rouleau.run("report", out, "--frames", "--out", file / "x"), 4, str(file))
 
     def test_a_report_of_damaged_files_shows_the_rest_and_says_what_is_damaged(self):
         out = self.path / "run"
