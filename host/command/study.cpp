@@ -53,7 +53,6 @@ bool tell_end(const study::StudyState& state) {
   const nlohmann::json study = study::study_json(state);
   std::string said;
   for (const auto& sentence : study["sentences"]) said += sentence["text"].get<std::string>() + "\n";
-  if (study["target"].is_object()) said += study["target"]["sentence"].get<std::string>() + "\n";
   std::cout << folded(said, text_width());
   return same;
 }
@@ -62,7 +61,7 @@ bool tell_end(const study::StudyState& state) {
 
 int study_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
-  std::string file, out, budget, target, max_time;
+  std::string file, out, budget, max_time;
   int repeats = 0;
   study::StudyOptions chosen;
   options::options_description description("options");
@@ -72,8 +71,6 @@ int study_command(const std::vector<std::string>& arguments) {
       "study's directory (default: runs/NAME of the study)")(
       "budget", options::value(&budget)->value_name("TIME"),
       "time for all runs, as 5min: the fastest points are run first, and those that do not fit are left out")(
-      "target", options::value(&target)->value_name("NAME=ERROR"),
-      "runs only what is needed to find the fastest point with an error below this, as deformation=1%")(
       "repeats", options::value(&repeats)->value_name("N"), "timed runs of each point (default: the study's, or 3)")(
       "max-time", options::value(&max_time)->value_name("TIME")->notifier(not_empty("--max-time")), TimeLimit::help)(
       "quiet", options::bool_switch(&chosen.quiet), "no lines on what is being run");
@@ -85,7 +82,6 @@ int study_command(const std::vector<std::string>& arguments) {
     throw Error(Cause::bad_input, "--repeats " + std::to_string(repeats) + ": wants a number from 1 to 100");
   if (repeats > 0) study.repeats = repeats;
   if (!budget.empty()) chosen.budget_s = seconds_in("--budget", budget);
-  if (!target.empty()) chosen.target = study::read_target(target, study.quantities);
   chosen.directory = out.empty() ? directory_for(file) : std::filesystem::path(out);
   chosen.interrupted = &listen_for_interruption(TimeLimit(max_time));
 

@@ -22,11 +22,9 @@ struct StudyAxis {
 
 /// One combination of settings and what came of it.
 struct StudyPoint {
-  std::vector<int> setting;  ///< index of a label, for each axis
-  bool tried = true;         ///< it was run, whatever came of it
-  double wall_s;             ///< median of its timed runs; NaN where there is none
-  double estimated_s;        ///< what a run was expected to take; NaN: nobody knows. Only of use before it is tried
-  std::vector<Measured> results;                     ///< for each quantity; empty where it was not tried
+  std::vector<int> setting;                          ///< index of a label, for each axis
+  double wall_s;                                     ///< median of its timed runs; NaN where there is none
+  std::vector<Measured> results;                     ///< for each quantity; empty where it was not run
   std::array<double, 2> wall_range{wall_s, wall_s};  ///< least and most of the timed runs
 };
 

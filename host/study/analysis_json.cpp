@@ -95,14 +95,4 @@ void add_analysis(Json& result, const StudyData& study, const std::vector<Quanti
   result["sentences"] = std::move(sentences);
 }
 
-Json target_json(const StudyData& study, std::size_t quantity, double target, const TargetDecision& decision) {
-  return {{"quantity", study.quantities[quantity].name},
-          {"value", target},
-          {"met", decision.met},
-          {"point", decision.point ? Json(*decision.point) : Json()},
-          {"estimated_error", json::number_or_null(decision.estimated_error)},
-          {"uncertainty", json::number_or_null(decision.uncertainty)},
-          {"sentence", decision.sentence}};
-}
-
 }  // namespace rouleau::study

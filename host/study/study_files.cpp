@@ -74,8 +74,7 @@ Json study_json(const StudyState& state) {
   result.update({{"left_out", left_out},
                  {"line", study.line < 0 ? Json(nullptr) : Json(study.axes[study.line].name)},
                  {"default", trial::labels_of(study.axes, study.default_point)},
-                 {"points", points},
-                 {"target", state.target}});
+                 {"points", points}});
   const StudyData data = study_data(state);
   add_analysis(result, data, analyse(data));
   for (const MatrixPoint& point : state.points) {

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <set>
 
-#include "analysis_json.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "run/provenance.hpp"
 #include "study_files.hpp"
-#include "target.hpp"
 #include "trial/fingerprint.hpp"
 
 namespace rouleau::study {
@@ -116,7 +114,7 @@ bool StudyRun::run() {
   if (missing < all)
     campaign_.say(std::to_string(all - missing) + " of " + std::to_string(all) + " points have been run before");
   write();
-  options_.target ? run_for_target() : run_all();
+  run_all();
   if (!campaign_.interrupted()) state_.finished = run::present_time();
   write();
   return !campaign_.interrupted();
@@ -144,28 +142,6 @@ void StudyRun::run_all() {
                   std::to_string(missing.size()) + " of " + std::to_string(state_.points.size()) + " points left, " +
                   duration_text(std::min(all, left)));
     if (take_turn(point) != PointEnd::done) passed.insert(point.id);
-  }
-}
-
-void StudyRun::run_for_target() {
-  const StudyTarget& target = *options_.target;
-  bool in_budget = true;
-  while (!campaign_.interrupted()) {
-    // One run of a point stands for all of its repeats.
-    const double left = in_budget ? (options_.budget_s - spent_s_) / (study_.repeats + 1) : 0;
-    const StudyData data = study_data(state_);
-    const TargetDecision decision = decide_target(data, target.quantity, target.error, left);
-    if (!decision.next) {
-      state_.target = target_json(data, target.quantity, target.error, decision);
-      break;
-    }
-    MatrixPoint& point = state_.points[*decision.next];
-    campaign_.say(trial::name_of(study_.axes, point.point) + ": expected " + duration_text(expected_s(point)));
-    in_budget = take_turn(point) == PointEnd::done;
-  }
-  if (campaign_.interrupted()) return;
-  for (MatrixPoint& point : state_.points) {
-    if (!point.record) point.left_out = "not needed to find what meets the target, or beyond the budget";
   }
 }
 

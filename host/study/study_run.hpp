@@ -3,12 +3,10 @@
 
 #include <filesystem>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "study_state.hpp"
-#include "study_target.hpp"
 #include "trial/campaign.hpp"
 #include "trial/run_cost.hpp"
 
@@ -16,7 +14,6 @@ namespace rouleau::study {
 
 struct StudyOptions : trial::CampaignOptions {
   double budget_s = std::numeric_limits<double>::infinity();  ///< wall time of all runs of this call
-  std::optional<StudyTarget> target = {};  ///< only what it takes to find the cheapest point that meets it is run
 };
 
 class StudyRun {
@@ -37,7 +34,6 @@ class StudyRun {
   void prepare_point(MatrixPoint& point);
   void plan_point(MatrixPoint& point);
   void run_all();
-  void run_for_target();
   [[nodiscard]] int runs_missing(const MatrixPoint& point) const;
   [[nodiscard]] double expected_s(const MatrixPoint& point) const;
   [[nodiscard]] std::vector<MatrixPoint*> missing_points();

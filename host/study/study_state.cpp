@@ -45,14 +45,12 @@ StudyData study_data(const StudyState& state) {
   data.default_setting = study.default_point.setting;
   data.quantities = study.quantities;
   for (const MatrixPoint& point : state.points) {
-    const bool tried = point.record.has_value();
     std::vector<double> times;
-    if (tried && point.record->end == trial::TrialEnd::completed) {
+    if (point.record && point.record->end == trial::TrialEnd::completed) {
       for (const trial::TimedRun& run : point.record->runs) times.push_back(run.wall_s);
     }
     const trial::MedianRange wall = trial::median_range(times);
-    data.points.push_back(
-        {point.point.setting, tried, wall.median, point.estimated_s, point.results, {wall.least, wall.most}});
+    data.points.push_back({point.point.setting, wall.median, point.results, {wall.least, wall.most}});
   }
   return data;
 }

@@ -29,7 +29,6 @@ struct MatrixPoint {
 struct StudyState {
   const Study* study;
   std::vector<MatrixPoint> points;  ///< by id
-  nlohmann::json target;            ///< what study.json says of it; null: none was given, or none was found yet
   std::string started, finished;    ///< finished: empty while it runs
   [[nodiscard]] bool complete() const;
 };

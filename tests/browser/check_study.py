@@ -160,10 +160,9 @@ class The_page_of_a_study(PageCase):
     def test_begins_with_its_sentences_and_then_its_warnings(self):
         page = self.open(PAGES["study"])
         boxes = page.run("[...document.querySelectorAll('.status')].map(e => [...e.querySelectorAll('li')].map(l => l.textContent))")
-        self.assertIn(STUDY["target"]["sentence"].replace("+-", "±"), boxes[0][0])
-        self.assertIn(STUDY["sentences"][0]["text"].replace("+-", "±"), boxes[0][1])
-        self.assertIn("below 1 × 10⁻⁷. The nearest is resolution 40, tau 1, scheme corrected", boxes[0][2])
-        self.assertEqual(len(boxes[0]), 3)  # where methods disagree is a warning
+        self.assertIn(STUDY["sentences"][0]["text"].replace("+-", "±"), boxes[0][0])
+        self.assertIn("below 1 × 10⁻⁷. The nearest is resolution 40, tau 1, scheme corrected", boxes[0][1])
+        self.assertEqual(len(boxes[0]), 2)  # where methods disagree is a warning
         warnings = "\n".join(boxes[1])
         for words in ("The methods disagree about deformation", "6 of 40 points failed", "1 point was left out", "not deterministic: resolution 5, tau 0.6, corrected: cells.csv"):
             self.assertIn(words, warnings)
@@ -174,7 +173,7 @@ class The_page_of_a_study(PageCase):
         self.assertEqual(page.run("document.querySelectorAll('.scatter .cross').length"), 2 * 6)
         self.assertEqual(page.run("document.querySelectorAll('.scatter .unknown').length"), 2 * 2)
         self.assertEqual(page.run("[...document.querySelectorAll('.scatter .band')].length"), 2)
-        self.assertEqual(page.run("[...document.querySelectorAll('.scatter .strong')].map(t => t.textContent)"), ["cheapest below 5 %, target", "default"] * 2)
+        self.assertEqual(page.run("[...document.querySelectorAll('.scatter .strong')].map(t => t.textContent)"), ["cheapest below 5 %", "default"] * 2)
 
     def test_has_guides_that_fall_with_the_lines_of_its_methods(self):
         page = self.open(PAGES["study"])
@@ -287,7 +286,7 @@ class The_page_of_a_study(PageCase):
         self.assertEqual(self.rows(page, "Time by pass")[0][:3], ["collide and stream", self.seconds(slowest), "52.0 %"])
         self.assertEqual(page.run("document.querySelectorAll('.ring.chosen').length"), 2)
         self.click(page, "show", ".sentences")
-        self.assertEqual(page.run("view.point"), STUDY["target"]["point"])
+        self.assertEqual(page.run("view.point"), STUDY["sentences"][0]["point"])
 
     def seconds(self, value):
         return f"{value:.3g} s"
@@ -317,7 +316,7 @@ class The_page_of_a_study(PageCase):
         self.assert_sound(self.open(report("long", json.loads(text)), "phone"), 390)
 
     def test_of_a_study_without_points_is_still_a_page(self):
-        page = self.open(report("empty", dict(STUDY, points=[], fronts={}, knobs={}, sentences=[], target=None)))
+        page = self.open(report("empty", dict(STUDY, points=[], fronts={}, knobs={}, sentences=[])))
         self.assertIn("No point has been run.", self.text(page))
         self.assert_sound(page)
 

@@ -22,10 +22,8 @@ function sentenceBox(view) {
   // Where methods disagree is told among the warnings.
   const told = (study.sentences ?? []).filter(s => !view.quantities.some(q => q.disagreement === s.text));
   const lines = told.map(s => element("li", {}, ...(s.text.includes(s.quantity) ? [] : [element("b", {}, s.quantity), ": "]), typeset(s.text), " ", find(s.quantity, s.point)));
-  const {target} = study;
-  if (target) lines.unshift(element("li", {class: target.met ? "" : "over"}, element("b", {}, target.sentence ? typeset(target.sentence) : (target.met ? "The target is met." : "The target is not met.")), " ", find(target.quantity, target.point)));
   if (!lines.length) lines.push(element("li", {}, "There is no conclusion yet: see the charts and tables."));
-  return element("div", {class: "card status sentences" + (target && !target.met ? " bad" : "")}, element("ul", {}, ...lines));
+  return element("div", {class: "card status sentences"}, element("ul", {}, ...lines));
 }
 
 function showStudy(study) {

@@ -56,9 +56,7 @@ class StudyView {
   }
   get sentences() { return (this.study.sentences ?? []).filter(sentence => sentence.quantity === this.quantity.name); }
   get targets() {
-    const {target} = this.study, levels = this.sentences.map(s => s.target);
-    if (target?.quantity === this.quantity.name) levels.push(target.value);
-    return [...new Set(levels.filter(level => typeof level === "number" && level > 0))];
+    return [...new Set(this.sentences.map(s => s.target).filter(level => typeof level === "number" && level > 0))];
   }
   get defaultPoint() {
     const wanted = Object.entries(this.study.default ?? {}), found = this.points.filter(p => wanted.every(([axis, label]) => p.labels[axis] === label));
@@ -71,8 +69,6 @@ class StudyView {
     const named = new Map(), add = (id, text) => { if (this.byId.has(id)) named.set(id, [...new Set([...(named.get(id) ?? []), text])]); };
     if (this.defaultPoint) add(this.defaultPoint.id, "default");
     for (const s of this.sentences) if (typeof s.point === "number" && typeof s.target === "number") add(s.point, `${this.meets(s.point, s.target) ? "cheapest below" : "nearest to"} ${this.errorText(s.target)}`);
-    const {target} = this.study;
-    if (target?.quantity === this.quantity.name && target.point !== null) add(target.point, "target");
     const rings = Object.fromEntries([...named].map(([id, texts]) => [id, texts.join(", ")]));
     if (this.point !== null) rings[this.point] ??= "";
     return rings;

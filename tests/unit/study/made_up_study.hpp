@@ -20,7 +20,7 @@ struct MadeUpStudy {
   ErrorKind error = ErrorKind::relative;
   Reference reference;
 
-  [[nodiscard]] StudyData data(bool tried = true) const {
+  [[nodiscard]] StudyData data() const {
     StudyData study;
     StudyAxis line{"resolution", {}, {}, true};
     for (const int radius : resolutions) {
@@ -39,8 +39,8 @@ struct MadeUpStudy {
     study.quantities = {quantity};
     for (int i = 0; i < static_cast<int>(resolutions.size()); ++i) {
       for (int j = 0; j < static_cast<int>(schemes.size()); ++j) {
-        StudyPoint point{{i, j}, false, std::nan(""), time(resolutions[static_cast<std::size_t>(i)], j), {}};
-        if (tried) run(point);
+        StudyPoint point{{i, j}, std::nan(""), {}};
+        run(point);
         study.points.push_back(point);
       }
     }
@@ -49,7 +49,6 @@ struct MadeUpStudy {
   void run(StudyPoint& point) const {
     const double radius = resolutions[static_cast<std::size_t>(point.setting[0])],
                  found = value(radius, point.setting[1]);
-    point.tried = true;
     point.wall_s = std::isfinite(found) ? time(radius, point.setting[1]) : std::nan("");
     point.results = {Measured{found, 0, std::isfinite(found) ? "" : "the run diverged"}};
   }

@@ -4,7 +4,6 @@
 
 #include "base/error.hpp"
 #include "files/file_lock.hpp"
-#include "study/study_target.hpp"
 #include "study_folder.hpp"
 #include "trial/fingerprint.hpp"
 #include "trial/run_cost.hpp"
@@ -29,16 +28,6 @@ void copy_plugin(const fs::path& to) {
   Json manifest = Json::parse(std::ifstream(fs::path(ROULEAU_SOURCE) / "plugins/collision/bgk/bgk.json"));
   manifest["id"] = "org.example.mine";
   std::ofstream(to / "mine.json") << manifest;
-}
-
-std::string target_refusal(const std::string& option, const std::vector<Quantity>& quantities) {
-  try {
-    read_target(option, quantities);
-    return "accepted";
-  } catch (const Error& error) {
-    CHECK(error.cause() == Cause::bad_input);
-    return error.what();
-  }
 }
 
 }  // namespace
@@ -107,22 +96,4 @@ TEST_CASE("a directory can be locked as a file can") {
   FileLock first(folder.path()), second(folder.path());
   CHECK(first.take());
   CHECK_FALSE(second.take());
-}
-
-TEST_CASE("a target is a share, or an error in the quantity's unit") {
-  Quantity deformation{}, angle{};
-  deformation.name = "D";
-  deformation.error = ErrorKind::relative;
-  angle.name = "angle";
-  angle.error = ErrorKind::absolute;
-  angle.unit = "deg";
-  const std::vector<Quantity> quantities{deformation, angle};
-  CHECK(read_target("D=1%", quantities).error == Approx(0.01));
-  CHECK(read_target("D=0.02", quantities).error == 0.02);
-  CHECK(read_target("angle=0.5 deg", quantities).quantity == 1);
-  CHECK(read_target("angle=0.5", quantities).error == 0.5);
-  CHECK(target_refusal("D", quantities).find("NAME=VALUE") != std::string::npos);
-  CHECK(target_refusal("angel=1", quantities).find("did you mean \"angle\"") != std::string::npos);
-  for (const char* wrong : {"D=", "D=0", "D=-1%", "D=1 m", "D=x", "angle=1%", "angle=1 rad", "D=nan", "D=inf"})
-    CHECK(target_refusal(wrong, quantities).find("wants an error above zero") != std::string::npos);
 }
