@@ -19,8 +19,8 @@ constexpr const char* limits_help = R"(usage: rouleau limits LIMITS [options]
 
 Increases one parameter of a scene until the simulation fails, and finds the edge by bisection, for each combination of
 methods; or runs single extreme cases. A completed run counts as failed if it lost too much area, gained energy at rest,
-has uneven nodes or wrote values that are not numbers. Writes limits.json, limits.csv and limits.html, which give reason,
-step, mode and wavelength of each failure.
+has uneven nodes or wrote values that are not numbers. Writes limits.json, limits.csv and limits.html, which give reason
+and step of each failure.
 
 Finished trials are kept: after Ctrl-C the same command continues in the same directory.
 

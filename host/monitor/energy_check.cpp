@@ -27,7 +27,7 @@ std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const 
       "cells and fluid at rest have gained energy (as a share of what there is), which they can only lose";
   failure.remedy = "lower " + setting.stage->density_factor_key;
   if (plan::kernel_named(plan.scene->numerics.kernel).semi_implicit_from == INFINITY)
-    failure.remedy += ", or set numerics.kernel to \"peskin4\"";
+    failure.remedy = "set numerics.kernel to \"peskin4\", or " + failure.remedy;
   else if (plan.semi_implicit)
     failure.remedy += ", so far that numerics.coupling may be \"explicit\" (the plan has the margins)";
   failure.remedy += ", or raise checks.energy_growth if this error is acceptable";

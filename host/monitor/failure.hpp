@@ -2,19 +2,10 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <optional>
 #include <string>
 
 namespace rouleau::monitor {
-
-/// What a failure looks like (docs/stability.md).
-struct FailureMode {
-  std::string name = "none";  ///< tangential, normal, node-scale, leakage, collapse, sound, none
-  double wavelength = std::numeric_limits<double>::quiet_NaN();        ///< segments; NaN: no wave
-  double tangential_share = std::numeric_limits<double>::quiet_NaN();  ///< of the wave's energy
-  long step = -1;                                                      ///< whose motion told it; -1: none
-};
 
 /// Why a run stopped early.
 struct Failure {
@@ -27,7 +18,6 @@ struct Failure {
   double value = 0, limit = 0;    ///< what was measured and the limit it passed
   std::string message;            ///< one sentence
   std::string remedy;             ///< what to change
-  FailureMode mode;
   std::optional<double> place_z = {};  ///< m, in three dimensions
 };
 

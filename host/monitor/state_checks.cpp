@@ -32,6 +32,12 @@ Failure failure(std::string reason, std::array<double, 2> place, int cell, doubl
   return f;
 }
 
+/// What else helps a membrane that is too stiff for the time step, if it is not so yet.
+std::string explicit_remedy(const plan::Plan& plan) {
+  const bool can = plan::kernel_named(plan.scene->numerics.kernel).semi_implicit_from != INFINITY;
+  return can && !plan.semi_implicit ? " or set numerics.coupling to \"semi-implicit\"" : "";
+}
+
 /// What to do first about a cell that leaks, if its segments or edges (mean length in spacings) are the reason.
 std::string leak_remedy(double length, bool in_space) {
   if (!(length > plan::longest_segment)) return "";
@@ -245,16 +251,18 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, 
   const double mach = observer.follow_fluid(solver.fluid());
   if (!(mach <= scene.checks.mach)) {
     const auto node = extreme_node(solver.fluid());
-    Failure found = std::isfinite(mach)
-                        ? failure("mach", place(node[0], node[1]), -1, mach, scene.checks.mach,
-                                  "the flow is too fast for the lattice: Mach number above its limit",
-                                  "lower " + setting.stage->density_factor_key +
-                                      ", the shear rate or the driving force, or raise the resolution")
-                        : failure("non_finite", place(node[0], node[1]), -1, std::nan(""), 0,
-                                  "the fluid holds a value that is no number", blown_up_remedy(*setting.stage));
+    const bool by_cells =
+        std::isfinite(mach) && !cells.cells.empty() && units::mach_number(setting.fastest_wall()) <= scene.checks.mach;
+    Failure found =
+        std::isfinite(mach)
+            ? failure("mach", place(node[0], node[1]), -1, mach, scene.checks.mach,
+                      "the flow is too fast for the lattice: Mach number above its limit",
+                      "lower " + setting.stage->density_factor_key + (by_cells ? explicit_remedy(plan) : "") +
+                          ", or lower the shear rate or the driving force, or raise the resolution")
+            : failure("non_finite", place(node[0], node[1]), -1, std::nan(""), 0,
+                      "the fluid holds a value that is no number", blown_up_remedy(*setting.stage));
     if constexpr (Set::dimension == 3) found.place_z = units::coordinate(node[2], units.length);
-    const bool by_walls = units::mach_number(setting.fastest_wall()) > scene.checks.mach;
-    if (std::isfinite(mach) && !by_walls && !cells.cells.empty()) {
+    if (by_cells) {
       core::Surroundings<Set::dimension> around = solver.cell_tasks()->surroundings();
       blame_contact(found, around, plan, setting);
     }

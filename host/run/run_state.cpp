@@ -26,7 +26,7 @@ void RunState::report(Summary& s) const {
 
 bool RunState::fits(const plan::Plan& plan, const core::CellNodes& membranes) const {
   return stage >= 0 && stage < static_cast<int>(plan.stages.size()) && stage_step >= 0 && steps_before >= 0 &&
-         steps >= stage_step && observer.fits(membranes) && rheology.fits() && growth.fits(membranes) &&
+         steps >= stage_step && observer.fits(membranes) && rheology.fits() &&
          rest_watch.fits(membranes, plan.stages[stage].stage->until_at_rest);
 }
 

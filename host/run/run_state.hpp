@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "monitor/equilibrium_watch.hpp"
-#include "monitor/growth_watch.hpp"
 #include "monitor/rest_watch.hpp"
 #include "observe/aggregate_history.hpp"
 #include "observe/energy.hpp"
@@ -55,7 +54,6 @@ struct RunState {
   observe::AggregateHistory history;
   observe::RheologyHistory rheology;
   observe::EnergyHistory energy;
-  monitor::GrowthWatch growth;
   PassCosts costs;
   monitor::RestWatch rest_watch;
   monitor::EquilibriumWatch equilibrium;
@@ -79,7 +77,7 @@ struct RunState {
   /// Whether it can be that of a run of this plan, before which it may have come from anywhere.
   [[nodiscard]] bool fits(const plan::Plan& plan, const core::CellNodes& membranes) const;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RunState, stage, steps, stage_step, steps_before, time, strain, wall, stage_wall,
-                                 momentum_residual, observer, history, rheology, energy, growth, costs, rest_watch,
+                                 momentum_residual, observer, history, rheology, energy, costs, rest_watch,
                                  equilibrium, stages, resumed)
 };
 

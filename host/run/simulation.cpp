@@ -22,7 +22,6 @@
 #include "load_balance.hpp"
 #include "monitor/contact_remedy.hpp"
 #include "monitor/energy_check.hpp"
-#include "monitor/failure_mode.hpp"
 #include "monitor/node_checks.hpp"
 #include "monitor/state_checks.hpp"
 #include "plan/output_schedule.hpp"
@@ -394,11 +393,9 @@ class Simulation {
 
   [[nodiscard]] bool interrupted() const { return options_.interrupted != nullptr && options_.interrupted->load(); }
 
-  /// Whether the last step must not be followed by another, or was faster than any before; all workers come to the same
-  /// answer.
+  /// Whether the last step must not be followed by another; all workers come to the same answer.
   [[nodiscard]] bool wants_a_look() const {
-    return !(core::largest_step(cells_) <= std::min(scene_.checks.node_step, state_.growth.level())) ||
-           solver_->escaped();
+    return !(core::largest_step(cells_) <= scene_.checks.node_step) || solver_->escaped();
   }
 
   /// One thread, before the forces of a step: whether the stage ends here, and the checkpoint.
@@ -427,7 +424,6 @@ class Simulation {
     course_.count_to(step);
     solver_->end_messages();
     if (fails(monitor::check_nodes(*solver_, scene_.checks.node_step, setting))) return;
-    if (core::largest_step(cells_) > state_.growth.level()) state_.growth.note(state_.steps, cells_, ranks_);
     if (checkpoints_.pending()) {
       observe::Observer look = state_.observer;  // one that leaves no trace
       checkpoints_.settle(!monitor::check_state(look, *solver_, setting, cells_, plan_));
@@ -440,10 +436,7 @@ class Simulation {
     const bool last = due_ending_ != Ending::none;
     if (cells_due || fields_due || check_due || last) {
       if (fails(monitor::check_state(state_.observer, *solver_, setting, cells_, plan_))) return;
-      if (check_due) {
-        state_.growth.check(state_.steps, cells_);
-        look_at_balance(step);
-      }
+      if (check_due) look_at_balance(step);
       if ((cells_due || fields_due || last) && !write(fields_due || (last && !scene_.output.fields.never()))) return;
       state_.momentum_residual =
           std::max(state_.momentum_residual, observe::Observer::momentum_residual(cells_, force_from_walls(), ranks_));
@@ -471,45 +464,9 @@ class Simulation {
     if (!found) return false;
     failure_ = std::move(found);
     course_.date(*failure_);
-    tell_mode(*failure_);
     log("diverged", {{"reason", failure_->reason}, {"step", failure_->step}, {"message", failure_->message}});
     ending_ = Ending::failed;
     return true;
-  }
-
-  /// How much of the fluid's motion about a place is every other node's.
-  double lattice_oscillation(const std::array<double, 2>& place, std::optional<double> place_z) {
-    solver_->fluid().settle();
-    const auto nearest = [](double coordinate, int nodes) {
-      return static_cast<int>(std::lround(std::clamp(coordinate, -1.0 * nodes, 2.0 * nodes)));
-    };
-    const bool known = std::isfinite(place[0]) && std::isfinite(place[1]);
-    std::array<int, dimension> node{};
-    for (std::size_t k = 0; known && k < 2; ++k) node[k] = nearest(place[k], scene_.domain.nodes[k]);
-    if constexpr (dimension == 3)
-      node[2] =
-          nearest(units::place_on_lattice(place_z.value_or(0), setting().units.length), scene_.domain.depth->nodes);
-    const double found = monitor::lattice_oscillation(solver_->fluid(), node);
-    return known ? found : 0;
-  }
-
-  /// What the failure looks like, and what to do about that.
-  void tell_mode(monitor::Failure& failure) {
-    const double spacing = setting().units.length;
-    const std::array<double, 2> place{units::place_on_lattice(failure.place[0], spacing),
-                                      units::place_on_lattice(failure.place[1], spacing)};
-    const double oscillation = core::of_first(ranks_, lattice_oscillation(place, failure.place_z));
-    if constexpr (dimension == 2) {
-      monitor::find_mode(failure, cells_, state_.growth, state_.observer.domain(), place, oscillation, failure.step,
-                         ranks_);
-    } else {
-      monitor::find_mode(failure, cells_, oscillation);
-    }
-    const std::string sentence = monitor::mode_sentence(failure),
-                      remedy = monitor::mode_remedy(failure, plan_.semi_implicit, *setting().stage,
-                                                    monitor::attraction_remedy(plan_, setting()));
-    if (!sentence.empty()) failure.message += "; " + sentence;
-    if (!remedy.empty()) failure.remedy = remedy;
   }
 
   /// Writes the present state, unless it has gained energy that nothing gave it: then the run fails, and false is

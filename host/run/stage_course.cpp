@@ -21,7 +21,6 @@ const core::GhostCells<Set::dimension>* ghosts(const core::Solver<T, Set>& solve
 template <class T, class Set>
 void StageCourse::begin(const core::Solver<T, Set>& solver) {
   state_.observer.start_stage();
-  state_.growth.start_stage();
   state_.stage_step = 0;
   state_.steps_before = state_.steps;
   state_.stage_wall = 0;

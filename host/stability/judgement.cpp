@@ -19,13 +19,8 @@ using Json = nlohmann::json;
 
 Json failure_in_summary(const Json& failure) {
   const auto value = [&](const char* key) { return failure.contains(key) ? failure[key] : Json(); };
-  const Json mode = value("mode");
-  return {{"reason", value("reason")},
-          {"step", value("step")},
-          {"mode", mode == "none" ? Json() : mode},
-          {"wavelength", value("wavelength_segments")},
-          {"message", value("message")},
-          {"remedy", value("remedy")}};
+  return {
+      {"reason", value("reason")}, {"step", value("step")}, {"message", value("message")}, {"remedy", value("remedy")}};
 }
 
 /// "column in row of table" of the first value that is no number where there must be one.
@@ -102,15 +97,12 @@ Json silent_failure(const Json& summary, const HealthCriteria& criteria) {
 }  // namespace
 
 Json failure_json(const std::string& reason, const std::string& message) {
-  return {{"reason", reason},      {"step", nullptr},    {"mode", nullptr},
-          {"wavelength", nullptr}, {"message", message}, {"remedy", nullptr}};
+  return {{"reason", reason}, {"step", nullptr}, {"message", message}, {"remedy", nullptr}};
 }
 
 std::string failure_text(const Json& failure) {
   std::string text = failure["reason"].is_string() ? failure["reason"].get<std::string>() : "";
   if (failure["step"].is_number()) text += " at step " + failure["step"].dump();
-  if (failure["mode"].is_string()) text += ", " + failure["mode"].get<std::string>();
-  if (failure["wavelength"].is_number()) text += ", " + number(failure["wavelength"].get<double>(), 3) + " segments";
   return text;
 }
 

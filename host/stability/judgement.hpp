@@ -21,7 +21,7 @@ struct HealthCriteria {
 struct Judgement {
   bool healthy = false;
   std::string end;         ///< of the trial: completed, diverged ...
-  nlohmann::json failure;  ///< null: none; {reason, step, mode, wavelength, message, remedy}, unknown ones null
+  nlohmann::json failure;  ///< null: none; {reason, step, message, remedy}, unknown ones null
 };
 
 /// Reason of a run that wrote what is no number: garbage, even if the run was stopped afterwards.

@@ -32,8 +32,7 @@ Json parameter_json(const LimitsParameter& parameter) {
 Json trial_json(const LimitsTrial& trial) {
   const Json& f = trial.judgement.failure;
   const auto of = [&f](const char* key) { return f.is_object() ? f[key] : Json(); };
-  return {{"value", trial.value}, {"end", trial.judgement.end}, {"reason", of("reason")},
-          {"step", of("step")},   {"mode", of("mode")},         {"wavelength", of("wavelength")}};
+  return {{"value", trial.value}, {"end", trial.judgement.end}, {"reason", of("reason")}, {"step", of("step")}};
 }
 
 Json edge_json(const LimitsState& state, const CombinationResult& combination, std::size_t index) {
@@ -130,13 +129,11 @@ Json limits_json(const LimitsState& state) {
 std::string limits_csv(const Json& limits) {
   Json head = {"kind", "name"};
   for (const Json& axis : limits["axes"]) head.push_back(axis["name"]);
-  for (const char* name : {"direction", "stable_up_to", "unstable_from", "unit", "expect", "verdict", "reason", "step",
-                           "mode", "wavelength_segments"})
+  for (const char* name : {"direction", "stable_up_to", "unstable_from", "unit", "expect", "verdict", "reason", "step"})
     head.push_back(name);
   std::string table = trial::csv_line(head);
   const auto add_failure = [](Json& row, const Json& failure) {
-    for (const char* key : {"reason", "step", "mode", "wavelength"})
-      row.push_back(failure.is_object() ? rounded(failure[key]) : Json());
+    for (const char* key : {"reason", "step"}) row.push_back(failure.is_object() ? rounded(failure[key]) : Json());
   };
   for (const Json& edge : limits["edges"]) {
     Json row = {"edge", limits["parameter"]["name"]};

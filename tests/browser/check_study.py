@@ -345,7 +345,7 @@ class The_page_of_limits(PageCase):
 
     def test_has_a_blue_for_stable_that_no_eye_takes_for_a_failure(self):
         for scheme in ("light", "dark"):
-            stable, *failing, card = self.open(PAGES["limits"], scheme=scheme).run("['--stable', ...Object.values(failureModes).map(([tone]) => tone), '--card'].map(css)")
+            stable, *failing, card = self.open(PAGES["limits"], scheme=scheme).run("['--stable', ...Object.values(failureReasons).map(([tone]) => tone), '--card'].map(css)")
             self.assertEqual(len(failing), 7)
             for tone in failing:
                 self.assertGreaterEqual(contrast(tone, card.ljust(7, card[-1])), 3, (scheme, tone))
@@ -363,7 +363,7 @@ class The_page_of_limits(PageCase):
         self.assertEqual(self.bar(page, "semi-implicit, cosine4"), [["stable", 6e-6, 6e-2]])
         self.assertEqual(self.bar(page, "corrected, cosine4"), [["failing", 6e-6, 6e-2]])
         # Each row says in words what its colours say.
-        self.assertIn("node-scale, node step", page.run("map.rows[0].line.textContent"))
+        self.assertIn("node step", page.run("map.rows[0].line.textContent"))
         self.assertEqual(page.run("document.querySelectorAll('.map-bar .trial').length"), sum(len(e["trials"]) for e in LIMITS["edges"]))
 
     def test_tells_of_a_trial_under_the_mouse(self):
@@ -373,7 +373,7 @@ class The_page_of_limits(PageCase):
         first = page.run(f"map.axis.at({LIMITS['edges'][0]['unstable_from']})")
         page.mouse("mouseMoved", x - width / 2 + first + 1, y)
         page.wait("!document.querySelector('.tip').hidden")
-        for words in ("N/m, plain, peskin4", "Diverged", "node_step", "step 400", "node-scale", "2 segments", "a node moved too far", "Lower the time step."):
+        for words in ("N/m, plain, peskin4", "Diverged", "node_step", "step 400", "a node moved too far", "Lower the time step."):
             self.assertIn(words, self.text(page, ".tip"))
         page.mouse("mouseMoved", x - width / 2 + 4, y)
         page.wait("document.querySelector('.tip').textContent.includes('Stable')")
@@ -424,7 +424,7 @@ class The_page_of_limits(PageCase):
         result = json.loads(json.dumps(LIMITS))
         result["parameter"].update({"scale": "linear", "from": -1, "to": 3, "unit": ""})
         result["edges"] = [{"labels": {}, "stable_up_to": 1, "unstable_from": 1.2, "direction": "above", "failure": None,
-                            "trials": [{"value": v, "end": "completed" if v < 1.1 else "crashed", "reason": None, "step": None, "mode": None, "wavelength": None} for v in (-1, 1, 1.2, 3)]}]
+                            "trials": [{"value": v, "end": "completed" if v < 1.1 else "crashed", "reason": None, "step": None} for v in (-1, 1, 1.2, 3)]}]
         result.update(axes=[], scenes=[])
         page = self.open(report("linear", result))
         a, b, c = page.run("[-1, 1, 3].map(v => map.axis.at(v))")

@@ -117,49 +117,47 @@ def small_study():
     return result
 
 
-MODES = {"plain": ("node_step", "node-scale", 2.0), "semi-implicit": ("area_loss", "leakage", 24.0), "corrected": ("energy_growth", "normal", 6.0)}
+REASONS = {"plain": "node_step", "semi-implicit": "area_loss", "corrected": "energy_growth"}
 
 
 def limits(title="Stiffness of the membrane"):
     """The shear modulus's edge for 3 schemes x 3 kernels: one has none, one fails everywhere, two fail at both ends."""
     low, high = 6e-6, 6e-2
     edges = []
-    for i, (scheme, kernel) in enumerate(itertools.product(MODES, ("peskin4", "cosine4", "linear2"))):
-        reason, mode, wavelength = MODES[scheme]
+    for i, (scheme, kernel) in enumerate(itertools.product(REASONS, ("peskin4", "cosine4", "linear2"))):
         edge = low * (high / low) ** (0.35 + 0.055 * i)
-        stops = dict(failure(reason, f"at {edge:.3g} N/m a node moved too far {MARKUP if i == 0 else ''}", "Lower the time step.", 400 + 97 * i), mode=mode, wavelength=wavelength)
+        stops = failure(REASONS[scheme], f"at {edge:.3g} N/m a node moved too far {MARKUP if i == 0 else ''}", "Lower the time step.", 400 + 97 * i)
         labels = {"scheme": scheme, "kernel": kernel}
         values = [low, high, *(edge * f for f in (0.1, 0.4, 0.96, 1.05, 1.8, 12) if low < edge * f < high)]
         if i == 4:
             edges.append(edge_of(labels, high, None, None, [trial(v) for v in values]))
         elif i == 7:
-            timed_out = dict(failure("timed_out", "no end within 10 min", None), mode=None, wavelength=None)
+            timed_out = failure("timed_out", "no end within 10 min", None)
             edges.append(edge_of(labels, None, low, timed_out, [trial(v, timed_out, "timed_out") for v in values]))
         else:
-            crossing = dict(failure("crossing", "two membranes cross", None, 12), mode="collapse", wavelength=None)
+            crossing = failure("crossing", "two membranes cross", None, 12)
             both = i in (2, 5)  # fails at both ends: all trials stand with the first edge
             trials = [trial(v, crossing if both and v < low * 3.5 else stops if v > edge else None) for v in values + ([low * 3, low * 4] if both else [])]
             if i == 8:  # a silent failure far below the edge
-                trials[2].update(reason="area_loss", mode="leakage")
+                trials[2].update(reason="area_loss")
             edges.append(edge_of(labels, edge * 0.96, edge * 1.05, stops, trials, [trials[2]["value"]] if i == 8 else []))
             if both:
                 edges.append(edge_of(labels, low * 4, low * 3, crossing, [], direction="below"))
-    nothing = {"mode": None, "wavelength": None}
     return {
         "rouleau_limits_result": 1, "title": title, "limits_file": "limits/stiffness.json", "scene_file": "scenes/capsule.json", "program": "0.1.0-g0123456", "program_sha256": "cd" * 32,
         "machine": {"cpu": "A processor of 2.1 GHz", "cores": 2, "memory_bytes": 8 << 30, "system": "Linux 6.1", "compiler": "g++ 12.2.0"},
         "started": "2026-01-02T03:04:05Z", "finished": "2026-01-02T03:34:05Z", "complete": True,
         "sound": {"area_drift": 0.01, "energy_growth": 0.01, "stretch": 3, "mass_drift": 1e-6}, "steps": 20000,
-        "axes": [{"name": "scheme", "labels": list(MODES), "positions": [None] * 3}, {"name": "kernel", "labels": ["peskin4", "cosine4", "linear2"], "positions": [None] * 3}],
+        "axes": [{"name": "scheme", "labels": list(REASONS), "positions": [None] * 3}, {"name": "kernel", "labels": ["peskin4", "cosine4", "linear2"], "positions": [None] * 3}],
         "parameter": {"name": "shear modulus", "pointers": ["/cell_types/rbc/membrane/0/parameters/shear_modulus"], "unit": "N/m", "scale": "log", "from": low, "to": high, "precision": 1.1,
                       "whole": False},
         "edges": edges,
         "cases": [
             {"name": "coincident nodes", "expect": "stops", "outcome": "refused: two nodes of cell 0 coincide", "verdict": "stopped with a reason", "as_expected": True,
-             "failure": dict(failure("refused", "two nodes of cell 0 coincide", None), **nothing)},
+             "failure": failure("refused", "two nodes of cell 0 coincide", None)},
             {"name": "10^6 steps at rest", "expect": "right", "outcome": "energy fell, area drift 2e-5", "verdict": "right answer", "as_expected": True, "failure": None},
-            {"name": "shear 1e5 /s", "expect": "right", "outcome": "mach at step 7, sound: the flow is too fast", "verdict": "stopped with a reason", "as_expected": False,
-             "failure": dict(failure("mach", "The flow is too fast.", "Lower density_factor.", 7), mode="sound", wavelength=None)},
+            {"name": "shear 1e5 /s", "expect": "right", "outcome": "mach at step 7: the flow is too fast", "verdict": "stopped with a reason", "as_expected": False,
+             "failure": failure("mach", "The flow is too fast.", "Lower density_factor.", 7)},
             {"name": "depth 1000 times Es", "expect": "either", "outcome": "completed with an area drift of 0.4", "verdict": "WRONG", "as_expected": False, "failure": None}],
         "scenes": [{"scene": "scenes/capsule.json", "value": 6e-6, "margin": 41.0, "why_not": None}, {"scene": "scenes/four-cells-shear.json", "value": 3e-4, "margin": 1.2, "why_not": None},
                    {"scene": "scenes/channel.json", "value": 1e-5, "margin": None, "why_not": "its kernel is in no combination"}],
@@ -168,7 +166,7 @@ def limits(title="Stiffness of the membrane"):
 
 
 def trial(value, why=None, end="diverged"):
-    return {"value": value, "end": end if why else "completed", **{key: why and why[key] for key in ("reason", "step", "mode", "wavelength")}}
+    return {"value": value, "end": end if why else "completed", **{key: why and why[key] for key in ("reason", "step")}}
 
 
 def edge_of(labels, stable, unstable, why, trials, contradicting=(), direction="above"):

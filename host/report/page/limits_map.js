@@ -1,20 +1,18 @@
 // --------------------------------------------------------------------------------- the map: where each combination is stable
-// What fails is warm, what is stable cool. Each way to fail has a hatching of its own, so that they differ on any paper and
+// What fails is warm, what is stable cool. Each reason to fail has a hatching of its own, so that they differ on any paper and
 // for any eye.
-const failureModes = {
-  tangential: ["--f0", "M0 3H8"], normal: ["--f1", "M3 0V8"], "node-scale": ["--f2", "M1 2h2M5 6h2"], leakage: ["--f3", "M-2 10L10 -2M-2 2L2 -2M6 10L10 6"],
-  collapse: ["--f4", "M0 0L8 8M0 8L8 0"], sound: ["--f5", "M-2 -2L10 10M6 -2L10 2M-2 6L2 10"], "": ["--f6", "M3 3h1.6M7 7h1.6"],
+const failureReasons = {
+  node_step: ["--f0", "M0 3H8"], mach: ["--f1", "M3 0V8"], energy_growth: ["--f2", "M1 2h2M5 6h2"], area_drift: ["--f3", "M-2 10L10 -2M-2 2L2 -2M6 10L10 6"],
+  crossing: ["--f4", "M0 0L8 8M0 8L8 0"], uneven_nodes: ["--f5", "M-2 -2L10 10M6 -2L10 2M-2 6L2 10"], "": ["--f6", "M3 3h1.6M7 7h1.6"],
 };
-const modeOf = failure => failure && Object.hasOwn(failureModes, failure.mode ?? "") ? failure.mode ?? "" : "";
-const modeWords = mode => ({"": "no mode", sound: "sound waves"})[mode] ?? mode;
-const reasonWords = reason => ({mach: "Mach number"})[reason] ?? reason.replaceAll("_", " ");
-const patternId = mode => `mode-${mode || "none"}`;
-const patterns = () => element("svg", {width: 0, height: 0, class: "patterns", "aria-hidden": "true"}, element("defs", {}, ...Object.entries(failureModes).map(([mode, [tone, d]]) =>
-  element("pattern", {id: patternId(mode), width: 8, height: 8, patternUnits: "userSpaceOnUse"},
+/// Of a failure, one that has a hatching.
+const reasonOf = failure => { const reason = failure?.reason === "area_loss" ? "area_drift" : failure?.reason ?? ""; return Object.hasOwn(failureReasons, reason) ? reason : ""; };
+const reasonWords = reason => ({mach: "Mach number", "": "another reason"})[reason] ?? reason.replaceAll("_", " ");
+const patternId = reason => `reason-${reason || "other"}`;
+const patterns = () => element("svg", {width: 0, height: 0, class: "patterns", "aria-hidden": "true"}, element("defs", {}, ...Object.entries(failureReasons).map(([reason, [tone, d]]) =>
+  element("pattern", {id: patternId(reason), width: 8, height: 8, patternUnits: "userSpaceOnUse"},
     element("rect", {width: 8, height: 8, fill: `var(${tone})`, opacity: .22}), element("path", {d, stroke: `var(${tone})`, "stroke-width": 1.7, fill: "none"})))));
-const modeSwatch = mode => element("svg", {width: 22, height: 14, "aria-hidden": "true"}, element("rect", {width: 22, height: 14, rx: 2, fill: `url(#${patternId(mode)})`, stroke: `var(${failureModes[mode][0]})`}));
-const failureText = failure => failure ? [failure.mode && modeWords(failure.mode), failure.reason && failure.reason !== failure.mode ? reasonWords(failure.reason) : null].filter(Boolean).join(", ") : "";
-const wavelengthText = value => typeof value === "number" ? `${format(value, 3)} segments` : null;
+const swatch = reason => element("svg", {width: 22, height: 14, "aria-hidden": "true"}, element("rect", {width: 22, height: 14, rx: 2, fill: `url(#${patternId(reason)})`, stroke: `var(${failureReasons[reason][0]})`}));
 
 const failed = trial => Boolean(trial.reason) || (trial.end ?? "completed") !== "completed";  // a run that completed may have failed silently
 
@@ -74,7 +72,7 @@ class LimitsMap {
   }
   line(row) {
     const line = this.bare(row.name), failures = [row.below, row.above].filter(edge => edge?.failure).map(edge => edge.failure);
-    line.lastChild.append(edgeText(row, this.unit), ...failures.map(failure => element("span", {class: "quiet"}, modeSwatch(modeOf(failure)), failureText(failure))));
+    line.lastChild.append(edgeText(row, this.unit), ...failures.map(failure => element("span", {class: "quiet"}, swatch(reasonOf(failure)), reasonWords(failure.reason ?? ""))));
     this.listen(line, row.trials, trial => this.describeTrial(row, trial));
     return row.line = line;
   }
@@ -102,7 +100,7 @@ class LimitsMap {
   }
   describeTrial(row, trial) {
     const {failure} = [row.above, row.below].find(edge => edge?.unstable_from === trial.value) ?? {}, fails = failed(trial);
-    const rows = [["reason", trial.reason], ["onset", typeof trial.step === "number" ? `step ${format(trial.step)}` : null], ["mode", trial.mode], ["wavelength", wavelengthText(trial.wavelength)]].filter(([, text]) => text);
+    const rows = [["reason", trial.reason], ["onset", typeof trial.step === "number" ? `step ${format(trial.step)}` : null]].filter(([, text]) => text);
     return [element("p", {class: "name"}, element("b", {}, `${format(trial.value, 4)} ${this.unit}`), row.name === "all points" ? "" : `, ${row.name}`),
       element("p", fails ? {class: "bad"} : {}, spelled(fails ? trial.end === "completed" ? "silent failure" : trial.end ?? "failed" : "stable")),
       element("dl", {}, ...rows.flatMap(([name, text]) => [element("dt", {}, name), element("dd", {}, text)])),
@@ -127,7 +125,7 @@ class LimitsMap {
   }
   drawBar(row) {
     const at = v => this.axis.at(v), drawn = stretches(row, this.low, this.high).filter(part => part.to > part.from).map(part => {
-      const mode = modeOf(part.failure), look = part.what === "failing" ? {fill: `url(#${patternId(mode)})`, stroke: `var(${failureModes[mode][0]})`} : {};
+      const reason = reasonOf(part.failure), look = part.what === "failing" ? {fill: `url(#${patternId(reason)})`, stroke: `var(${failureReasons[reason][0]})`} : {};
       return element("rect", {x: at(part.from), y: 5, width: at(part.to) - at(part.from), height: 22, class: part.what, ...look});
     });
     for (const trial of row.trials) {
@@ -149,7 +147,7 @@ class LimitsMap {
 function mapLegend(rows) {
   const key = (mark, text) => element("span", {class: "key"}, mark, text), box = (name, look = {}) => element("svg", {width: 22, height: 14, "aria-hidden": "true"}, element("rect", {x: 1, y: 1, width: 20, height: 12, class: name, ...look}));
   const tick = d => element("svg", {width: 14, height: 14, "aria-hidden": "true"}, element("path", {d, class: "trial"}));
-  const modes = [...new Set(rows.flatMap(row => [row.above, row.below]).filter(edge => edge?.failure).map(edge => modeOf(edge.failure)))];
-  return element("div", {class: "legend map"}, key(box("stable"), "stable"), key(box("open"), "not known: between stable and unstable"), ...modes.map(mode => key(modeSwatch(mode), `fails: ${modeWords(mode)}`)),
+  const reasons = [...new Set(rows.flatMap(row => [row.above, row.below]).filter(edge => edge?.failure).map(edge => reasonOf(edge.failure)))];
+  return element("div", {class: "legend map"}, key(box("stable"), "stable"), key(box("open"), "not known: between stable and unstable"), ...reasons.map(reason => key(swatch(reason), `fails: ${reasonWords(reason)}`)),
     key(tick("M7 1V13"), "tried, stable"), key(tick("M3 3L11 11M3 11L11 3"), "tried, failed"));
 }

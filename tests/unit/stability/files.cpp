@@ -14,12 +14,7 @@ namespace {
 Judgement failed_at(long step) {
   return {false,
           "diverged",
-          {{"reason", "node_step"},
-           {"step", step},
-           {"mode", "tangential"},
-           {"wavelength", 7.5},
-           {"message", "a node, too fast"},
-           {"remedy", "slower"}}};
+          {{"reason", "node_step"}, {"step", step}, {"message", "a node, too fast"}, {"remedy", "slower"}}};
 }
 
 LimitsFile file_with_parameter() {
