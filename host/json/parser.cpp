@@ -2,7 +2,7 @@
 
 #include "base/text.hpp"
 #include "json_pointer.hpp"
-#include "syntax_diagnosis.hpp"
+#include "syntax_fault.hpp"
 
 namespace rouleau::json {
 namespace {
@@ -45,12 +45,11 @@ class Reader final : public nlohmann::json_sax<nlohmann::json> {
     key_ = value;
     key_start_ = start;
     cursor_ = end_of_string(text_, start);
-    after_ = Taken::key;
     return true;
   }
 
-  bool parse_error(std::size_t consumed, const std::string&, const nlohmann::detail::exception&) override {
-    throw describe_malformed(text_, {cursor_, consumed, after_, opened(), pointer()});
+  bool parse_error(std::size_t consumed, const std::string&, const nlohmann::detail::exception& error) override {
+    throw syntax_fault(text_, error.what(), consumed, opened(), pointer());
   }
 
  private:
@@ -93,14 +92,13 @@ class Reader final : public nlohmann::json_sax<nlohmann::json> {
   bool scalar(nlohmann::json value, std::size_t length) {
     add(std::move(value));
     cursor_ += length;
-    after_ = containers_.empty() ? Taken::document : Taken::value;
     return true;
   }
 
   template <class Number>
   bool number(Number value) {
     const auto start = skip_separators();
-    return scalar(value, end_of_number(text_, start) - start);
+    return scalar(value, text_.find_first_not_of("+-.0123456789eE", start) - start);
   }
 
   bool open(nlohmann::json value) {
@@ -109,7 +107,6 @@ class Reader final : public nlohmann::json_sax<nlohmann::json> {
       throw TextFault(start, "objects and arrays lie more than " + std::to_string(deepest_nesting) +
                                  " deep within each other, which no file of this kind needs");
     }
-    const bool array = value.is_array();
     auto token = containers_.empty()                    ? std::string()
                  : containers_.back().value->is_array() ? std::to_string(containers_.back().value->size())
                                                         : key_;
@@ -117,7 +114,6 @@ class Reader final : public nlohmann::json_sax<nlohmann::json> {
     auto& added = add(std::move(value));
     containers_.push_back({&added, last_node(), std::move(token)});
     cursor_ = start + 1;
-    after_ = array ? Taken::array_start : Taken::object_start;
     return true;
   }
 
@@ -125,7 +121,6 @@ class Reader final : public nlohmann::json_sax<nlohmann::json> {
     cursor_ = text_.find_first_of("]}", skip_separators()) + 1;
     result_.tree.close(containers_.back().node);
     containers_.pop_back();
-    after_ = containers_.empty() ? Taken::document : Taken::value;
     return true;
   }
 
@@ -147,7 +142,6 @@ class Reader final : public nlohmann::json_sax<nlohmann::json> {
   std::string key_;
   std::size_t key_start_ = 0;
   std::size_t cursor_ = 0;  ///< end of the last token taken
-  Taken after_ = Taken::nothing;
 };
 
 }  // namespace

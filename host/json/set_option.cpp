@@ -3,7 +3,6 @@
 #include "document.hpp"
 #include "parser.hpp"
 #include "put_value.hpp"
-#include "syntax_diagnosis.hpp"
 
 namespace rouleau::json {
 namespace {
@@ -11,10 +10,10 @@ namespace {
 class Assignment {
  public:
   explicit Assignment(const std::string& assignment) : option_("--set " + assignment) {
-    for (std::size_t at = 0, length = 0; at < assignment.size(); at += length) {
-      length = utf8_length(assignment, at);
-      if (length == 0)
-        refuse("its byte " + std::to_string(at + 1) + " is no UTF-8; write it in a terminal that is set to UTF-8");
+    try {
+      (void)nlohmann::json(assignment).dump();
+    } catch (const nlohmann::json::type_error&) {
+      refuse("it is no UTF-8; write it in a terminal that is set to UTF-8");
     }
     const auto equals = assignment.find('=');
     if (equals == std::string::npos) {

@@ -78,23 +78,28 @@ TEST_CASE("values come through as written") {
   CHECK(document.root() == nlohmann::json::parse(document.text()));
 }
 
-TEST_CASE("malformed text is refused with line, column and a sentence of our own") {
-  CHECK(message_of("{\"a\": 1,\n}") == "a.json:1:8\n  remove this comma: nothing follows it but '}'");
-  CHECK_THAT(message_of("{\"a\": [1, 2}"), Contains("a.json:1:12 /a\n  '}' cannot close the '[' of line 1; write ']'"));
+TEST_CASE("malformed text is refused with line, column, the parser's words and what mends the usual slips") {
+  CHECK(
+      message_of("{\"a\": 1,\n}") ==
+      "a.json:2:1\n  this is not JSON: while parsing object key - unexpected '}'; expected string literal; remove the "
+      "comma before this '}'");
+  CHECK_THAT(message_of("{\"a\": [1, 2}"), Contains("a.json:1:12 /a\n  this is not JSON: while parsing array"));
   CHECK_THAT(message_of("{\"a\": tru}"), Contains("needs double quotes"));
-  CHECK_THAT(message_of("{\"a\": 01}"), Contains("leave out the zeros in front"));
-  CHECK_THAT(message_of("[1 2]"), Contains("a ',' or ']' is missing before this number"));
-  CHECK_THAT(message_of("[1-2]"), Contains("a ',' or ']' is missing before this number"));
-  CHECK_THAT(message_of("\"abc"), Contains("never closed"));
-  CHECK_THAT(message_of("["), Contains("the '[' of line 1 is not closed"));
-  CHECK_THAT(message_of("{\"a\""), Contains("the '{' of line 1 is not closed"));
-  CHECK_THAT(message_of("]"), Contains("a value is missing before this ']'"));
-  CHECK_THAT(message_of("{\"a\": \"\xC3(\"}"), Contains("byte 0xC3 is not valid UTF-8"));
-  CHECK_THAT(message_of("{\"a\": \"\\ud800\"}"), Contains("half of a pair"));
-  CHECK_THAT(message_of("{\"a\": \"\\u12g4\"}"), Contains("four hexadecimal digits"));
-  CHECK_THAT(message_of("{\"a\": \"x\ny\"}"), Contains("not closed by a double quote on its line"));
-  CHECK_THAT(message_of("[1] [2]"), Contains("only one JSON value"));
-  CHECK_THAT(message_of("\x80"), Contains("byte 0x80"));
+  CHECK_THAT(message_of("{\"a\": 5 mm}"), Contains("a.json:1:9\n") && Contains("a quantity with its unit"));
+  CHECK_THAT(message_of("{a: 5}"), Contains("a.json:1:2\n") && Contains("\"a\" needs double quotes"));
+  CHECK_THAT(message_of("{\"a\": True}"), Contains("write true in lower case"));
+  CHECK_THAT(message_of("{\"a\": 'b'}"), Contains("not in single ones"));
+  CHECK_THAT(message_of("{} // x"), Contains("JSON has no comments"));
+  CHECK_THAT(message_of("[1 2]"), Contains("a.json:1:4\n") && Contains("unexpected number literal; expected ']'"));
+  CHECK_THAT(message_of("\"abc"), Contains("missing closing quote"));
+  CHECK_THAT(message_of("["), Contains("before the '[' of line 1 is closed"));
+  CHECK_THAT(message_of("{\"a\""), Contains("before the '{' of line 1 is closed"));
+  CHECK_THAT(message_of("]"), Contains("unexpected ']'"));
+  CHECK_THAT(message_of("{\"a\": \"\xC3(\"}"), Contains("ill-formed UTF-8 byte"));
+  CHECK_THAT(message_of("{\"a\": \"\\ud800\"}"), Contains("surrogate"));
+  CHECK_THAT(message_of("{\"a\": \"x\ny\"}"), Contains("control character U+000A (LF) must be escaped"));
+  CHECK_THAT(message_of("[1] [2]"), Contains("expected end of input"));
+  CHECK_THAT(message_of("\x80"), Contains("invalid literal"));
 }
 
 TEST_CASE("no truncation of a document and no changed byte of it ends otherwise than in an error or a value") {
@@ -245,7 +250,7 @@ TEST_CASE("set takes UTF-8 only, in pointer and value: what is set is written in
   for (const std::string assignment :
        {"/a=w\xffrd", "/a=\"\xc3\"", "/\xfe=1", "/a=\xc0\xaf", "/a=\xed\xa0\x80", "/b/-=M\xfcller"}) {
     CAPTURE(assignment);
-    CHECK_THAT(message_of_set(document, assignment), Contains("is no UTF-8") && Contains("its byte "));
+    CHECK_THAT(message_of_set(document, assignment), Contains("is no UTF-8"));
   }
   document.set("/a=M\xc3\xbcller");
   CHECK(document.root()["a"] == "M\xc3\xbcller");
