@@ -116,4 +116,9 @@ void silence_terminal() {
   std::cerr.rdbuf(&nobody);
 }
 
+void give_terminal_back() {
+  std::cout.flush();
+  if (standard_output != nullptr) dup2(standard_output->descriptor(), STDOUT_FILENO);
+}
+
 }  // namespace rouleau::command

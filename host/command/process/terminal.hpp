@@ -15,6 +15,9 @@ void take_terminal();
 /// Nothing that std::cout and std::cerr print is shown: the first rank of a run speaks for the others.
 void silence_terminal();
 
+/// Standard output is the descriptor 1 again: for a program that this process becomes.
+void give_terminal_back();
+
 /// Characters in a line of what is printed: COLUMNS, or what the terminal has, at least 40 and at most 100. Lines of what
 /// goes into a file or another program, which may look for words in them, are as long as they are: `without`.
 std::size_t text_width(std::size_t without = std::string::npos);
