@@ -111,7 +111,7 @@ class Costs {
   };
   /// Those of a solver, timed.
   template <class T, class Set>
-  std::vector<core::Pass> timed(core::Solver<T, Set>& solver);
+  core::StepPasses timed(core::Solver<T, Set>& solver);
   void forget() {
     for (Part& part : parts_) part.seconds = part.bytes = 0;
   }
@@ -138,17 +138,17 @@ class Costs {
 };
 
 template <class T, class Set>
-std::vector<core::Pass> Costs::timed(core::Solver<T, Set>& solver) {
+core::StepPasses Costs::timed(core::Solver<T, Set>& solver) {
   const bool ranks = solver.ranks().several();
   core::StepFeatures features{.viscosity_contrast = solver.fluid().setting().viscosity_contrast,
                               .moving_frame = solver.setup().follow_cells,
                               .ranks = ranks};
   solver.cell_tasks()->describe(features);
   const core::Schedule schedule = core::make_schedule(features);
-  std::vector<core::Pass> passes = solver.passes();
-  if (schedule.steps.size() != passes.size()) throw std::logic_error("a solver's step is not the schedule's");
-  for (std::size_t i = 0; i < passes.size(); ++i) {
-    core::Pass& pass = passes[i];
+  core::StepPasses passes = solver.passes();
+  if (schedule.steps.size() != passes.passes.size()) throw std::logic_error("a solver's step is not the schedule's");
+  for (std::size_t i = 0; i < passes.passes.size(); ++i) {
+    core::Pass& pass = passes.passes[i];
     const core::Task task = schedule.steps[i].task;
     const bool of_lattice = task == core::Task::send_halo || task == core::Task::receive_halo;
     Part& own = part(of_lattice ? lattice_messages : pass.name == "ranks" ? cell_messages : pass.name);
@@ -185,17 +185,15 @@ class Part {
 
   [[nodiscard]] core::Solver<T, Set>& solver() { return solver_; }
   [[nodiscard]] const plan::Cells<D>& cells() const { return cells_; }
-  void step(const std::vector<core::Pass>& passes) {
+  void step(const core::StepPasses& passes) {
     core::Barrier nobody(1);
-    const auto run = [&](std::size_t first, std::size_t last) {
-      core::run_passes(passes, first, last, solver_.bands(), Worker{}, nobody, nullptr);
-    };
-    if (runs() && passes.size() > 2) {
+    const auto run = [&](std::size_t first, std::size_t last) { passes.run(first, last, Worker{}, nobody); };
+    const std::size_t all = passes.passes.size();
+    if (runs() && all > 2) {
       // Before its nodes are located: who reads their velocities goes by that, here and on other ranks.
-      const std::size_t moved = passes.size() - 2;
-      run(0, moved), move_runner(), run(moved, passes.size());
+      run(0, all - 2), move_runner(), run(all - 2, all);
     } else {
-      run(0, passes.size());
+      run(0, all);
     }
   }
   void step() { step(solver_.passes()); }
@@ -248,7 +246,7 @@ Outcome<T> outcome(Part<T, Set>& part, const core::Box<Set::dimension>& block, c
   }
   core::Fluid<T, Set>& fluid = part.solver().fluid();
   fluid.settle();
-  std::vector<T> populations;
+  std::vector<double> populations;
   for (int q = 0; q < Set::velocity_count; ++q) {
     fluid.copy_populations(q, populations);
     core::for_common_rows(fluid.setting().domain.block, block, [&](std::ptrdiff_t at, int count) {
@@ -387,7 +385,7 @@ void time_alone(const Window<Set::dimension>& window, const Received& received, 
   }
   Replay<T, Set> replay(window, received);
   Costs costs(&replay.player());
-  const std::vector<core::Pass> passes = costs.timed(replay.part().solver());
+  const core::StepPasses passes = costs.timed(replay.part().solver());
   replay.for_steps(0, first_steps, [&] { replay.part().step(passes); });
   costs.forget();
   replay.for_steps(first_steps, steps, [&] { replay.part().step(passes); });
@@ -399,7 +397,7 @@ template <class T, class Set>
 void time_in_one_piece(const Window<Set::dimension>& window, std::size_t steps, StepTimes& times) {
   Part<T, Set> part(window, {});
   Costs costs(nullptr);
-  const std::vector<core::Pass> passes = costs.timed(part.solver());
+  const core::StepPasses passes = costs.timed(part.solver());
   for (std::size_t i = 0; i < first_steps; ++i) part.step(passes);
   costs.forget();
   for (std::size_t i = first_steps; i < steps; ++i) part.step(passes);

@@ -77,18 +77,11 @@ std::filesystem::path previous_checkpoint_file(const std::filesystem::path& dire
 
 struct CheckpointWriter::File {
   explicit File(const std::filesystem::path& file) : hdf5(file, hdf5::File::Mode::create, head_bytes) {}
-  template <class T>
-  hdf5::Rows begin(const std::string& path, const std::vector<hsize_t>& shape) {
+  void begin(const std::string& path, const std::vector<hsize_t>& shape, bool single) {
     const std::string group = parent_group(path);
     if (!group.empty() && !hdf5.has(group)) hdf5.make_group(group);
-    const bool f64 = std::is_same_v<T, double>;
-    return hdf5.begin(path, shape, false, f64 ? H5T_IEEE_F64LE : H5T_IEEE_F32LE,
-                      f64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT, "lattice units");
-  }
-  template <class T>
-  void write(const std::string& path, const std::vector<hsize_t>& shape, const T* values) {
-    hdf5::Rows array = begin<T>(path, shape);
-    if (!array.full()) array.append(values, shape.front());
+    open = hdf5.begin(path, shape, false, single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, "lattice units");
+    width = shape.size() > 1 ? shape.back() : 1;
   }
   void write_bytes(const std::string& path, const void* data, std::size_t count) {
     hdf5.write(path, {count}, H5T_STD_U8LE, H5T_NATIVE_UINT8, data, "1");
@@ -119,38 +112,15 @@ void CheckpointWriter::state(const nlohmann::json& state) {
   file_->write_bytes("/state", bytes.data(), bytes.size());
 }
 
-void CheckpointWriter::array(const std::string& path, std::size_t rows, std::size_t columns, const double* values) {
-  file_->write(path, {rows, columns}, values);
+void CheckpointWriter::begin_array(const std::string& path, std::size_t rows, std::size_t columns, bool single) {
+  file_->begin(path, {rows, columns}, single);
 }
 
-void CheckpointWriter::array(const std::string& path, std::size_t rows, std::size_t columns, const float* values) {
-  file_->write(path, {rows, columns}, values);
-}
+void CheckpointWriter::begin_array(const std::string& path, std::size_t count) { file_->begin(path, {count}, false); }
 
-void CheckpointWriter::array(const std::string& path, std::span<const double> values) {
-  file_->write(path, {values.size()}, values.data());
-}
-
-template <class T>
-void CheckpointWriter::begin_array(const std::string& path, std::size_t rows, std::size_t columns) {
-  file_->open = file_->begin<T>(path, {rows, columns});
-  file_->width = columns;
-}
-
-void CheckpointWriter::begin_array(const std::string& path, std::size_t count) {
-  file_->open = file_->begin<double>(path, {count});
-  file_->width = 1;
-}
-
-template <class T>
-void CheckpointWriter::append(const std::vector<T>& rows) {
+void CheckpointWriter::append(const std::vector<double>& rows) {
   file_->open->append(rows.data(), rows.size() / file_->width);
 }
-
-template void CheckpointWriter::begin_array<double>(const std::string&, std::size_t, std::size_t);
-template void CheckpointWriter::begin_array<float>(const std::string&, std::size_t, std::size_t);
-template void CheckpointWriter::append(const std::vector<double>&);
-template void CheckpointWriter::append(const std::vector<float>&);
 
 void CheckpointWriter::finish() {
   file_->hdf5.close();
@@ -175,13 +145,13 @@ struct CheckpointReader::File {
               path + " holds " + std::to_string(hdf5.elements(path)) + " values instead of " + std::to_string(count));
   }
   void read_block(const std::filesystem::path& file, const std::string& path, Pair size, Pair begin, Pair end,
-                  hid_t wanted, void* values) const {
+                  double* values) const {
     const auto rows_first = [](Pair xy) {
       return std::vector<hsize_t>{static_cast<hsize_t>(xy[1]), static_cast<hsize_t>(xy[0])};
     };
     if (hdf5.shape(path) != std::vector<std::size_t>{rows_first(size)[0], rows_first(size)[1]})
       damaged(file, path + " has another shape than the lattice");
-    hdf5.read(path, wanted, rows_first(begin), rows_first(end), values);
+    hdf5.read(path, H5T_NATIVE_DOUBLE, rows_first(begin), rows_first(end), values);
   }
   hdf5::File hdf5;
 };
@@ -237,11 +207,7 @@ void CheckpointReader::part(const std::string& path, std::size_t count, std::siz
 }
 
 void CheckpointReader::block(const std::string& path, Pair size, Pair begin, Pair end, double* values) const {
-  file_->read_block(path_, path, size, begin, end, H5T_NATIVE_DOUBLE, values);
-}
-
-void CheckpointReader::block(const std::string& path, Pair size, Pair begin, Pair end, float* values) const {
-  file_->read_block(path_, path, size, begin, end, H5T_NATIVE_FLOAT, values);
+  file_->read_block(path_, path, size, begin, end, values);
 }
 
 }  // namespace rouleau::files

@@ -11,7 +11,6 @@
 #include <array>
 #include <filesystem>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -35,18 +34,12 @@ class CheckpointWriter {
 
   void facts(const nlohmann::json& facts);
   void state(const nlohmann::json& state);
-  /// An array of `rows` times `columns` values at "/name" or "/group/name"; groups are made.
-  void array(const std::string& path, std::size_t rows, std::size_t columns, const double* values);
-  void array(const std::string& path, std::size_t rows, std::size_t columns, const float* values);
-  /// One of so many values, without columns.
-  void array(const std::string& path, std::span<const double> values);
-  /// Begins an array whose rows, or values, append() adds, the first ones first. T: double or float. Nothing else is written
-  /// before they are all there.
-  template <class T>
-  void begin_array(const std::string& path, std::size_t rows, std::size_t columns);
+  /// Begins an array of `rows` times `columns` values, or of so many without columns, at "/name" or "/group/name"; groups are
+  /// made. append() adds its rows, or values, the first ones first; nothing else is written before they are all there.
+  /// `single`: the file has them in single precision.
+  void begin_array(const std::string& path, std::size_t rows, std::size_t columns, bool single = false);
   void begin_array(const std::string& path, std::size_t count);
-  template <class T>
-  void append(const std::vector<T>& rows);
+  void append(const std::vector<double>& rows);
   /// Nothing can be added after it: the file is whole and on the disk, and still beside the checkpoint.
   void finish();
   /// After finish(): it becomes the directory's checkpoint, and that becomes the previous one.
@@ -85,7 +78,6 @@ class CheckpointReader {
   /// Rows [begin[1], end[1]) and columns [begin[0], end[0]) of an array of size[1] times size[0] values.
   using Pair = std::array<int, 2>;
   void block(const std::string& path, Pair size, Pair begin, Pair end, double* values) const;
-  void block(const std::string& path, Pair size, Pair begin, Pair end, float* values) const;
 
  private:
   struct File;

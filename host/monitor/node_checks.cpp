@@ -25,8 +25,8 @@ FoundNode found(const core::CellNodes& cells, int node, double step) {
 bool is_node(const FoundNode& found) { return found.node >= 0; }
 
 /// The first node that has left the domain.
-template <class T, class Set>
-FoundNode escaped_node(const core::Solver<T, Set>& solver) {
+template <int D>
+FoundNode escaped_node(const core::AnySolver<D>& solver) {
   return core::best_of_all(
       solver.ranks(), found(solver.cells(), solver.escaped_node(), 0),
       [](const FoundNode& a, const FoundNode& b) { return is_node(a) && (!is_node(b) || a.node < b.node); });
@@ -58,9 +58,8 @@ void locate_failure(Failure& f, const FoundNode& node, double spacing) {
 template void locate_failure<2>(Failure&, const FoundNode&, double);
 template void locate_failure<3>(Failure&, const FoundNode&, double);
 
-template <class T, class Set>
-std::optional<Failure> check_nodes(const core::Solver<T, Set>& solver, double limit,
-                                   const scene::StageSetting& setting) {
+template <int D>
+std::optional<Failure> check_nodes(const core::AnySolver<D>& solver, double limit, const scene::StageSetting& setting) {
   const core::CellNodes& cells = solver.cells();
   if (cells.cells.empty()) return std::nullopt;
   Failure f;
@@ -72,11 +71,11 @@ std::optional<Failure> check_nodes(const core::Solver<T, Set>& solver, double li
     f.limit = limit;
     f.message = finite ? "a membrane node moved further in one step than its limit (in lattice spacings)"
                        : "the velocity of a membrane node is no number";
-    locate_failure<Set::dimension>(f, farthest, setting.units.length);
+    locate_failure<D>(f, farthest, setting.units.length);
   } else if (solver.escaped()) {
     f.reason = "escaped";
     f.message = "a membrane node has left the domain through a wall";
-    locate_failure<Set::dimension>(f, escaped_node(solver), setting.units.length);
+    locate_failure<D>(f, escaped_node(solver), setting.units.length);
   } else {
     return std::nullopt;
   }
@@ -84,11 +83,7 @@ std::optional<Failure> check_nodes(const core::Solver<T, Set>& solver, double li
   return f;
 }
 
-template std::optional<Failure> check_nodes(const core::Solver<float>&, double, const scene::StageSetting&);
-template std::optional<Failure> check_nodes(const core::Solver<double>&, double, const scene::StageSetting&);
-template std::optional<Failure> check_nodes(const core::Solver<float, core::D3Q19>&, double,
-                                            const scene::StageSetting&);
-template std::optional<Failure> check_nodes(const core::Solver<double, core::D3Q19>&, double,
-                                            const scene::StageSetting&);
+template std::optional<Failure> check_nodes(const core::AnySolver<2>&, double, const scene::StageSetting&);
+template std::optional<Failure> check_nodes(const core::AnySolver<3>&, double, const scene::StageSetting&);
 
 }  // namespace rouleau::monitor

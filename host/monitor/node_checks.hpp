@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "core/solver/solver.hpp"
+#include "core/solver/any_solver.hpp"
 #include "failure.hpp"
 #include "scene/scene.hpp"
 #include "scene/stage_scales.hpp"
@@ -34,8 +34,7 @@ void locate_failure(Failure& failure, const FoundNode& node, double spacing);
 
 /// The first check that the last step failed, without its time: a node that moved further than `limit` lattice
 /// spacings, is nowhere, or has left the domain. All ranks ask together, and get the same.
-template <class T, class Set>
-std::optional<Failure> check_nodes(const core::Solver<T, Set>& solver, double limit,
-                                   const scene::StageSetting& setting);
+template <int D>
+std::optional<Failure> check_nodes(const core::AnySolver<D>& solver, double limit, const scene::StageSetting& setting);
 
 }  // namespace rouleau::monitor

@@ -48,13 +48,13 @@ std::string leak_remedy(double length, bool in_space) {
 }
 
 /// Node with the first value that is no number, else the one with the largest speed; on all ranks.
-template <class T, class Set>
-std::array<double, Set::dimension> extreme_node(const core::Fluid<T, Set>& fluid) {
-  using Moments = core::Moments<Set::dimension>;
+template <int D>
+std::array<double, D> extreme_node(const core::AnyFluid<D>& fluid) {
+  using Moments = core::Moments<D>;
   std::size_t extreme = 0, node = 0;
   double fastest = -1;
   bool finite = true;
-  fluid.gather_moments(core::bands_of_all<Set::dimension>(fluid.setting().domain.size, sizeof(Moments)),
+  fluid.gather_moments(core::bands_of_all<D>(fluid.setting().domain.size, sizeof(Moments)),
                        [&](int, const std::vector<Moments>& moments) {
                          for (auto m = moments.begin(); finite && m != moments.end(); ++m, ++node) {
                            double square = 0;
@@ -64,8 +64,8 @@ std::array<double, Set::dimension> extreme_node(const core::Fluid<T, Set>& fluid
                            fastest = std::max(fastest, square);
                          }
                        });
-  std::array<double, Set::dimension> place;
-  for (int k = 0; k < Set::dimension; ++k) {
+  std::array<double, D> place;
+  for (int k = 0; k < D; ++k) {
     const auto size = static_cast<std::size_t>(fluid.setting().domain.size[k]);
     place[k] = static_cast<double>(extreme % size);
     extreme /= size;
@@ -239,10 +239,9 @@ std::optional<Failure> check_cells(observe::Observer& observer, const scene::Sta
 
 }  // namespace
 
-template <class T, class Set>
-std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, Set>& solver,
-                                   const scene::StageSetting& setting,
-                                   const typename core::Solver<T, Set>::Cells& cells, const plan::Plan& plan) {
+template <int D>
+std::optional<Failure> check_state(observe::Observer& observer, core::AnySolver<D>& solver,
+                                   const scene::StageSetting& setting, const plan::Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   const units::LatticeUnits& units = setting.units;
   const auto place = [&](double x, double y) {
@@ -251,8 +250,8 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, 
   const double mach = observer.follow_fluid(solver.fluid());
   if (!(mach <= scene.checks.mach)) {
     const auto node = extreme_node(solver.fluid());
-    const bool by_cells =
-        std::isfinite(mach) && !cells.cells.empty() && units::mach_number(setting.fastest_wall()) <= scene.checks.mach;
+    const bool by_cells = std::isfinite(mach) && !solver.cells().cells.empty() &&
+                          units::mach_number(setting.fastest_wall()) <= scene.checks.mach;
     Failure found =
         std::isfinite(mach)
             ? failure("mach", place(node[0], node[1]), -1, mach, scene.checks.mach,
@@ -261,25 +260,21 @@ std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, 
                           ", or lower the shear rate or the driving force, or raise the resolution")
             : failure("non_finite", place(node[0], node[1]), -1, std::nan(""), 0,
                       "the fluid holds a value that is no number", blown_up_remedy(*setting.stage));
-    if constexpr (Set::dimension == 3) found.place_z = units::coordinate(node[2], units.length);
+    if constexpr (D == 3) found.place_z = units::coordinate(node[2], units.length);
     if (by_cells) {
-      core::Surroundings<Set::dimension> around = solver.cell_tasks()->surroundings();
+      core::Surroundings<D> around = solver.cell_tasks()->surroundings();
       blame_contact(found, around, plan, setting);
     }
     return found;
   }
-  if (cells.cells.empty()) return std::nullopt;
-  core::Surroundings<Set::dimension> around = solver.cell_tasks()->surroundings();
+  if (solver.cells().cells.empty()) return std::nullopt;
+  core::Surroundings<D> around = solver.cell_tasks()->surroundings();
   return check_cells(observer, setting, around, plan);
 }
 
-#define ROULEAU_INSTANTIATE(T, Set)                                                                                  \
-  template std::optional<Failure> check_state(observe::Observer&, core::Solver<T, Set>&, const scene::StageSetting&, \
-                                              const typename core::Solver<T, Set>::Cells&, const plan::Plan&);
-ROULEAU_INSTANTIATE(float, core::D2Q9)
-ROULEAU_INSTANTIATE(double, core::D2Q9)
-ROULEAU_INSTANTIATE(float, core::D3Q19)
-ROULEAU_INSTANTIATE(double, core::D3Q19)
-#undef ROULEAU_INSTANTIATE
+template std::optional<Failure> check_state(observe::Observer&, core::AnySolver<2>&, const scene::StageSetting&,
+                                            const plan::Plan&);
+template std::optional<Failure> check_state(observe::Observer&, core::AnySolver<3>&, const scene::StageSetting&,
+                                            const plan::Plan&);
 
 }  // namespace rouleau::monitor

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/solver/solver.hpp"
+#include "core/solver/any_solver.hpp"
 #include "failure.hpp"
 #include "observe/observer.hpp"
 #include "plan/plan.hpp"
@@ -13,9 +13,8 @@ namespace rouleau::monitor {
 /// The first check of the scene that the state fails, without its time: a value of the fluid that is no number, the Mach
 /// number, a cell's area or volume, the length of a segment or edge, membranes that cross. `observer` follows mass, Mach
 /// number and areas. All ranks together, and all find the same.
-template <class T, class Set>
-std::optional<Failure> check_state(observe::Observer& observer, core::Solver<T, Set>& solver,
-                                   const scene::StageSetting& setting,
-                                   const typename core::Solver<T, Set>::Cells& cells, const plan::Plan& plan);
+template <int D>
+std::optional<Failure> check_state(observe::Observer& observer, core::AnySolver<D>& solver,
+                                   const scene::StageSetting& setting, const plan::Plan& plan);
 
 }  // namespace rouleau::monitor

@@ -23,47 +23,38 @@ double given_away(const core::CellNodes& m, const core::Ranks<D>& ranks) {
   });
 }
 
-/// Of all membranes.
-template <class Solver>
-core::MembraneEnergy membrane_energy(Solver& solver) {
-  return solver.cell_tasks()->forces().energies(solver.cells(), solver.ranks());
-}
-
 std::string without_energy(const char* kind, const std::string& model) {
   return std::string(kind) + " " + model + " gives no energy";
 }
 
 }  // namespace
 
-template <class T, class Set>
-CellEnergy cell_energy(core::Solver<T, Set>& solver) {
+template <int D>
+CellEnergy cell_energy(core::AnySolver<D>& solver) {
   CellEnergy energy;
   auto* tasks = solver.cell_tasks();
   if (tasks == nullptr) return energy;
   const auto add = [&](double part) { energy.sum += part, energy.magnitude += std::abs(part); };
-  const core::MembraneEnergy membrane = membrane_energy(solver);
+  const core::MembraneEnergy membrane = tasks->membrane_energy();
   add(membrane.tension + membrane.cell);
   add(membrane.bending);
   if (!membrane.unknown.empty()) energy.unknown = without_energy("membrane law", membrane.unknown);
-  tasks->for_each_interaction([&](const auto& forces) {
-    add(forces.energy(solver.cells(), solver.ranks()));
-    const std::string silent = forces.without_energy();
+  for (const auto& [part, silent] : tasks->interaction_energies()) {
+    add(part);
     if (!silent.empty()) energy.unknown = without_energy("interaction", silent);
-  });
+  }
   return energy;
 }
 
-template CellEnergy cell_energy(core::Solver<float>&);
-template CellEnergy cell_energy(core::Solver<float, core::D3Q19>&);
-template CellEnergy cell_energy(core::Solver<double>&);
-template CellEnergy cell_energy(core::Solver<double, core::D3Q19>&);
+template CellEnergy cell_energy(core::AnySolver<2>&);
+template CellEnergy cell_energy(core::AnySolver<3>&);
 
-template <class T, class Set>
-EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const units::LatticeUnits& units) {
-  const core::FluidSetting<Set::dimension>& setting = solver.fluid().setting();
+template <int D>
+EnergySnapshot observe_energy(core::AnySolver<D>& solver, const units::LatticeUnits& units) {
+  const core::FluidSetting<D>& setting = solver.fluid().setting();
   // What the lattice has is summed over its depth.
   double depth = 1;
-  if constexpr (Set::dimension == 3) depth = setting.domain.size[2];
+  if constexpr (D == 3) depth = setting.domain.size[2];
   const double joule = units.to_si(1, units::dimension::energy_per_depth) / depth,
                watt = units.to_si(1, units::dimension::power_per_depth) / depth;
   EnergySnapshot energy;
@@ -80,13 +71,13 @@ EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const units::Lattice
     energy.wall_power =
         -(stress.lower * walls.lower + stress.upper * walls.upper) * setting.domain.size[0] * depth * watt;
   }
-  if (setting.body_force != std::array<double, Set::dimension>{}) {
+  if (setting.body_force != std::array<double, D>{}) {
     double power = 0;
-    for (int k = 0; k < Set::dimension; ++k) power += setting.body_force[k] * fluid.velocity[k];
+    for (int k = 0; k < D; ++k) power += setting.body_force[k] * fluid.velocity[k];
     energy.body_force_power = power * watt;
   }
   if (auto* tasks = solver.cell_tasks()) {
-    const core::MembraneEnergy membrane = membrane_energy(solver);
+    const core::MembraneEnergy membrane = tasks->membrane_energy();
     energy.elastic = (membrane.tension + membrane.cell) * joule;
     energy.bending = membrane.bending * joule;
     energy.membrane_dissipation = membrane.dissipation * watt;
@@ -101,23 +92,20 @@ EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const units::Lattice
     }
     if (!membrane.unknown.empty()) energy.unknown = without_energy("membrane law", membrane.unknown);
     bool interact = false;
-    tasks->for_each_interaction([&](const auto& forces) {
-      const double part = forces.energy(solver.cells(), solver.ranks()) * joule;
+    for (const auto& [of_kind, silent] : tasks->interaction_energies()) {
+      const double part = of_kind * joule;
       energy.interaction = interact ? energy.interaction + part : part;
       energy.total += part;
       interact = true;
-      const std::string silent = forces.without_energy();
       if (!silent.empty()) energy.unknown = without_energy("interaction", silent);
-    });
+    }
   }
   if (!energy.unknown.empty()) energy.total = EnergySnapshot::none;
   return energy;
 }
 
-template EnergySnapshot observe_energy(core::Solver<float>&, const units::LatticeUnits&);
-template EnergySnapshot observe_energy(core::Solver<float, core::D3Q19>&, const units::LatticeUnits&);
-template EnergySnapshot observe_energy(core::Solver<double>&, const units::LatticeUnits&);
-template EnergySnapshot observe_energy(core::Solver<double, core::D3Q19>&, const units::LatticeUnits&);
+template EnergySnapshot observe_energy(core::AnySolver<2>&, const units::LatticeUnits&);
+template EnergySnapshot observe_energy(core::AnySolver<3>&, const units::LatticeUnits&);
 
 void EnergyHistory::follow(const Snapshot& snapshot, bool driven, double floor) {
   const EnergySnapshot& energy = snapshot.energy;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/solver/solver.hpp"
+#include "core/solver/any_solver.hpp"
 #include "json/json.hpp"
 #include "snapshot.hpp"
 #include "units/lattice_units.hpp"
@@ -18,12 +18,12 @@ struct CellEnergy {
   double sum = 0, magnitude = 0;  ///< of elastic, bending and interaction energy: their sum, that of their magnitudes
   std::string unknown;            ///< why the sum is not known; empty: it is
 };
-template <class T, class Set>
-CellEnergy cell_energy(core::Solver<T, Set>& solver);
+template <int D>
+CellEnergy cell_energy(core::AnySolver<D>& solver);
 
 /// State before the next step of `solver`, whose forces have been computed and whose fluid is settled.
-template <class T, class Set>
-EnergySnapshot observe_energy(core::Solver<T, Set>& solver, const units::LatticeUnits& units);
+template <int D>
+EnergySnapshot observe_energy(core::AnySolver<D>& solver, const units::LatticeUnits& units);
 
 /// Follows the total energy through the stages at rest, where it may only fall.
 class EnergyHistory {

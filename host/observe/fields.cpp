@@ -156,17 +156,16 @@ auto giver(const StoredRows<D>& rows, bool around, std::size_t bytes, std::size_
   };
 }
 
-template <class T, class Set>
-FieldSnapshot fields_of(const core::Fluid<T, Set>& fluid, const scene::Scene& scene, const units::LatticeUnits& units,
+template <int D>
+FieldSnapshot fields_of(const core::AnyFluid<D>& fluid, const scene::Scene& scene, const units::LatticeUnits& units,
                         std::size_t bytes) {
-  constexpr int dimension = Set::dimension;
-  using Moments = core::Moments<dimension>;
-  using Row = std::array<int, dimension - 1>;
-  const StoredRows<dimension> rows(fluid.setting().domain, scene.output.field_storage);
+  using Moments = core::Moments<D>;
+  using Row = std::array<int, D - 1>;
+  const StoredRows<D> rows(fluid.setting().domain, scene.output.field_storage);
   FieldSnapshot snapshot;
   snapshot.nx = rows.along(0);
   snapshot.ny = rows.along(1);
-  if constexpr (dimension == 3) snapshot.nz = rows.along(2);
+  if constexpr (D == 3) snapshot.nz = rows.along(2);
   const int columns = snapshot.nx;
   const auto add = [&]<class V>(V, const char* name, const char* unit, int components, bool around, auto gather,
                                 auto fill) {
@@ -184,7 +183,7 @@ FieldSnapshot fields_of(const core::Fluid<T, Set>& fluid, const scene::Scene& sc
         const Moments* const nodes = known.at(rows.number(row));
         for (int column = 0; column < columns; ++column) {
           const Moments& m = nodes[rows.node(column)];
-          for (int k = 0; k < 3; ++k) *to++ = k < dimension ? m.velocity[k] * speed : 0;
+          for (int k = 0; k < 3; ++k) *to++ = k < D ? m.velocity[k] * speed : 0;
         }
       });
   add(Moments{}, "density", "1", 1, false, moments, [=](const Row& row, const KnownRows<Moments>& known, double* to) {
@@ -197,8 +196,8 @@ FieldSnapshot fields_of(const core::Fluid<T, Set>& fluid, const scene::Scene& sc
     for (int column = 0; column < columns; ++column)
       *to++ = core::viscosity_of(1 / nodes[rows.node(column)]) * viscosity_unit;
   });
-  Vorticity<dimension> curl(rows, fluid.setting().solid.get(), fluid.walls_now());
-  add(Moments{}, "vorticity", "1/s", dimension == 2 ? 1 : 3, true, moments,
+  Vorticity<D> curl(rows, fluid.setting().solid.get(), fluid.walls_now());
+  add(Moments{}, "vorticity", "1/s", D == 2 ? 1 : 3, true, moments,
       [=](const Row& row, const KnownRows<Moments>& known, double* to) mutable {
         curl.begin(row, known);
         for (int column = 0; column < columns; ++column) {
@@ -210,19 +209,15 @@ FieldSnapshot fields_of(const core::Fluid<T, Set>& fluid, const scene::Scene& sc
 
 }  // namespace
 
-template <class T, class Set>
-FieldSnapshot observe_fields(const core::Fluid<T, Set>& fluid, const scene::Scene& scene,
+template <int D>
+FieldSnapshot observe_fields(const core::AnyFluid<D>& fluid, const scene::Scene& scene,
                              const units::LatticeUnits& units, std::size_t bytes) {
   return fields_of(fluid, scene, units, bytes);
 }
 
-#define ROULEAU_INSTANTIATE(T, Set)                                                                                  \
-  template FieldSnapshot observe_fields(const core::Fluid<T, Set>&, const scene::Scene&, const units::LatticeUnits&, \
-                                        std::size_t);
-ROULEAU_INSTANTIATE(float, core::D2Q9)
-ROULEAU_INSTANTIATE(double, core::D2Q9)
-ROULEAU_INSTANTIATE(float, core::D3Q19)
-ROULEAU_INSTANTIATE(double, core::D3Q19)
-#undef ROULEAU_INSTANTIATE
+template FieldSnapshot observe_fields(const core::AnyFluid<2>&, const scene::Scene&, const units::LatticeUnits&,
+                                      std::size_t);
+template FieldSnapshot observe_fields(const core::AnyFluid<3>&, const scene::Scene&, const units::LatticeUnits&,
+                                      std::size_t);
 
 }  // namespace rouleau::observe

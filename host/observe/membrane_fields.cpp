@@ -1,6 +1,6 @@
 #include "membrane_fields.hpp"
 
-#include <type_traits>
+#include <vector>
 
 #include "core/solver/in_order.hpp"
 
@@ -8,24 +8,17 @@ namespace rouleau::observe {
 
 namespace {
 
-/// Appends the tension of each segment of a cell, or the mean over the triangles around each node of a surface; N/m.
-template <class T>
-void add_tensions(core::OutlineTasks<T>& tasks, const core::Membranes& membranes, int cell, double unit,
-                  std::vector<double>& values) {
-  for (const double tension : tasks.forces().tensions(membranes, cell)) values.push_back(tension * unit);
-}
-template <class T>
-void add_tensions(core::SurfaceTasks<T>& tasks, const core::Surfaces& surfaces, int cell, double unit,
-                  std::vector<double>& values) {
-  const core::Mesh& mesh = surfaces.type_of(cell).mesh;
-  const std::vector<double> of_triangle = tasks.forces().tensions(surfaces, cell);
+/// What a surface has of each triangle, as means over the triangles around each node.
+std::vector<double> means_around_nodes(const core::Mesh& mesh, const std::vector<double>& of_triangle) {
+  std::vector<double> means;
   for (int i = 0; i < mesh.node_count(); ++i) {
     const auto begin = static_cast<std::size_t>(mesh.corners().first[i]),
                end = static_cast<std::size_t>(mesh.corners().first[i + 1]);
     double sum = 0;
     for (std::size_t c = begin; c < end; ++c) sum += of_triangle[mesh.corners().entry[c] / 3];
-    values.push_back(sum / static_cast<double>(end - begin) * unit);
+    means.push_back(sum / static_cast<double>(end - begin));
   }
+  return means;
 }
 
 /// The sum of both principal curvatures at each node; 1/m.
@@ -39,9 +32,9 @@ void add_curvatures(const core::Surfaces& surfaces, int cell, double spacing, st
 
 }  // namespace
 
-template <class T, class Set>
-MembraneSnapshot observe_membranes(core::Solver<T, Set>& solver, const units::LatticeUnits& units) {
-  constexpr bool in_space = Set::dimension == 3;
+template <int D>
+MembraneSnapshot observe_membranes(core::AnySolver<D>& solver, const units::LatticeUnits& units) {
+  constexpr bool in_space = D == 3;
   const auto& cells = solver.cells();
   auto* const tasks = solver.cell_tasks();
   MembraneSnapshot snapshot;
@@ -56,7 +49,7 @@ MembraneSnapshot observe_membranes(core::Solver<T, Set>& solver, const units::La
                                }});
   };
   const double spacing = units.length, tension = units.to_si(1, units::dimension::tension);
-  field("points", "m", Set::dimension, [&cells, spacing](int cell, std::vector<double>& values) {
+  field("points", "m", D, [&cells, spacing](int cell, std::vector<double>& values) {
     for (int i = cells.cells[cell].first; i < cells.cells[cell].end(); ++i) {
       values.push_back(units::coordinate(cells.position[0][i], spacing));
       values.push_back(units::coordinate(cells.position[1][i], spacing));
@@ -64,7 +57,9 @@ MembraneSnapshot observe_membranes(core::Solver<T, Set>& solver, const units::La
     }
   });
   field("tension", "N/m", 1, [&cells, tasks, tension](int cell, std::vector<double>& values) {
-    add_tensions(*tasks, cells, cell, tension, values);
+    std::vector<double> tensions = tasks->tensions(cell);
+    if constexpr (in_space) tensions = means_around_nodes(cells.type_of(cell).mesh, tensions);
+    for (const double of_place : tensions) values.push_back(of_place * tension);
   });
   if constexpr (in_space) {
     field("curvature", "1/m", 1,
@@ -74,12 +69,7 @@ MembraneSnapshot observe_membranes(core::Solver<T, Set>& solver, const units::La
   return snapshot;
 }
 
-#define ROULEAU_INSTANTIATE(T, Set) \
-  template MembraneSnapshot observe_membranes(core::Solver<T, Set>&, const units::LatticeUnits&);
-ROULEAU_INSTANTIATE(float, core::D2Q9)
-ROULEAU_INSTANTIATE(double, core::D2Q9)
-ROULEAU_INSTANTIATE(float, core::D3Q19)
-ROULEAU_INSTANTIATE(double, core::D3Q19)
-#undef ROULEAU_INSTANTIATE
+template MembraneSnapshot observe_membranes(core::AnySolver<2>&, const units::LatticeUnits&);
+template MembraneSnapshot observe_membranes(core::AnySolver<3>&, const units::LatticeUnits&);
 
 }  // namespace rouleau::observe

@@ -1,7 +1,7 @@
 // What frames hold of the nodes of membranes, in SI units.
 #pragma once
 
-#include "core/solver/solver.hpp"
+#include "core/solver/any_solver.hpp"
 #include "snapshot.hpp"
 #include "units/lattice_units.hpp"
 
@@ -9,7 +9,7 @@ namespace rouleau::observe {
 
 /// Places, tensions and, of surfaces, curvatures of a solver with cells, whose forces have been computed. What the fields give
 /// is computed when it is asked for: the solver must be there until then, and be where it is.
-template <class T, class Set>
-MembraneSnapshot observe_membranes(core::Solver<T, Set>& solver, const units::LatticeUnits& units);
+template <int D>
+MembraneSnapshot observe_membranes(core::AnySolver<D>& solver, const units::LatticeUnits& units);
 
 }  // namespace rouleau::observe

@@ -112,8 +112,8 @@ double Observer::momentum_residual(const core::CellNodes& m, const std::array<do
   return magnitudes > 0 ? net / magnitudes : 0;
 }
 
-template <class T, class Set>
-double Observer::follow_fluid(core::Fluid<T, Set>& fluid) {
+template <int D>
+double Observer::follow_fluid(core::AnyFluid<D>& fluid) {
   fluid.settle();
   const auto [mass, speed] = fluid.mass_and_speed();
   if (std::isnan(initial_mass_)) initial_mass_ = mass;
@@ -201,9 +201,9 @@ void Observer::follow_stretch(const core::StretchRange& stretch, CellSnapshot& s
   stretch_.most = std::max(stretch_.most, stretch.most);
 }
 
-template <class T, class Set>
-Snapshot Observer::observe(core::Solver<T, Set>& solver, const scene::StageSetting& setting,
-                           const typename core::Solver<T, Set>::Cells& cells, bool with_fields) {
+template <int D>
+Snapshot Observer::observe(core::AnySolver<D>& solver, const scene::StageSetting& setting, bool with_fields) {
+  const auto& cells = solver.cells();
   const units::LatticeUnits& units = setting.units;
   Snapshot snapshot;
   snapshot.stage = setting.index;
@@ -216,7 +216,7 @@ Snapshot Observer::observe(core::Solver<T, Set>& solver, const scene::StageSetti
   snapshot.shear_rate = snapshot.wall_stress_lower = snapshot.wall_stress_upper = std::nan("");
   snapshot.pressure_gradient = std::nan("");
   snapshot.aggregate_size_number_mean = snapshot.aggregate_size_weight_mean = std::nan("");
-  const core::Fluid<T, Set>& fluid = solver.fluid();
+  const core::AnyFluid<D>& fluid = solver.fluid();
   const bool oscillates = setting.oscillation.any();
   if (!scene_->domain.periodic_y) {
     const auto stress = solver.wall_stress();
@@ -244,11 +244,11 @@ Snapshot Observer::observe(core::Solver<T, Set>& solver, const scene::StageSetti
         units.to_si(fluid.setting().body_force[0], units::dimension::force_density) - scene_->fluid.body_force.x();
   }
   if (!cells.cells.empty()) {
-    const core::Ranks<Set::dimension>& ranks = solver.ranks();
+    const core::Ranks<D>& ranks = solver.ranks();
     if (!scene_->domain.periodic_y) {
-      const core::Domain<Set::dimension> domain = scene::lattice_domain<Set::dimension>(*scene_);
+      const core::Domain<D> domain = scene::lattice_domain<D>(*scene_);
       const CellFreeLayer layer = [&] {
-        if constexpr (Set::dimension == 3) {
+        if constexpr (D == 3) {
           if (const std::optional<double> radius = scene_->domain.tube_radius)
             return cell_free_layer_in_tube(cells, domain, *radius / units.length, ranks);
         }
@@ -265,7 +265,7 @@ Snapshot Observer::observe(core::Solver<T, Set>& solver, const scene::StageSetti
                                           [&](int c) { return solver.cell_tasks()->force_across_images(c); }),
                           units::dimension::pressure)
             : std::numeric_limits<double>::quiet_NaN();
-    core::Surroundings<Set::dimension> around = solver.cell_tasks()->surroundings();
+    core::Surroundings<D> around = solver.cell_tasks()->surroundings();
     observe_cells(around, units, snapshot);
     snapshot.area_drift_max = follow_area(cells, ranks);
     snapshot.area_leakage_max = area_leakage(cells, ranks);
@@ -288,15 +288,9 @@ template double Observer::momentum_residual(const core::CellNodes&, const std::a
                                             const core::Ranks<2>&);
 template double Observer::momentum_residual(const core::CellNodes&, const std::array<double, 2>&,
                                             const core::Ranks<3>&);
-template Snapshot Observer::observe(core::Solver<float>&, const scene::StageSetting&, const core::Membranes&, bool);
-template Snapshot Observer::observe(core::Solver<double>&, const scene::StageSetting&, const core::Membranes&, bool);
-template Snapshot Observer::observe(core::Solver<float, core::D3Q19>&, const scene::StageSetting&,
-                                    const core::Surfaces&, bool);
-template Snapshot Observer::observe(core::Solver<double, core::D3Q19>&, const scene::StageSetting&,
-                                    const core::Surfaces&, bool);
-template double Observer::follow_fluid(core::Fluid<float>&);
-template double Observer::follow_fluid(core::Fluid<double>&);
-template double Observer::follow_fluid(core::Fluid<float, core::D3Q19>&);
-template double Observer::follow_fluid(core::Fluid<double, core::D3Q19>&);
+template Snapshot Observer::observe(core::AnySolver<2>&, const scene::StageSetting&, bool);
+template Snapshot Observer::observe(core::AnySolver<3>&, const scene::StageSetting&, bool);
+template double Observer::follow_fluid(core::AnyFluid<2>&);
+template double Observer::follow_fluid(core::AnyFluid<3>&);
 
 }  // namespace rouleau::observe

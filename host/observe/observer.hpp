@@ -8,7 +8,7 @@
 #include "aggregates.hpp"
 #include "cell_measures.hpp"
 #include "core/membrane/geometry.hpp"
-#include "core/solver/solver.hpp"
+#include "core/solver/any_solver.hpp"
 #include "json/json.hpp"
 #include "rotation.hpp"
 #include "scene/stage_scales.hpp"
@@ -38,13 +38,12 @@ class Observer {
 
   /// State before the next step of `solver`, whose forces must have been computed. `with_fields`: fields are due. All
   /// ranks together; what is about cells comes to the first, and fields give what they have to it.
-  template <class T, class Set>
-  Snapshot observe(core::Solver<T, Set>& solver, const scene::StageSetting& setting,
-                   const typename core::Solver<T, Set>::Cells& cells, bool with_fields);
+  template <int D>
+  Snapshot observe(core::AnySolver<D>& solver, const scene::StageSetting& setting, bool with_fields);
 
   /// Follows mass and Mach number; returns the latter, which is NaN if the fluid holds a value that is no number.
-  template <class T, class Set>
-  double follow_fluid(core::Fluid<T, Set>& fluid);
+  template <int D>
+  double follow_fluid(core::AnyFluid<D>& fluid);
   /// Follows the areas that outlines enclose, the volumes of surfaces; returns the largest relative change since the
   /// start. `cell`: whose. All ranks together, of all cells.
   template <class Cells, int D>

@@ -12,19 +12,17 @@ bool is_driven_channel(const scene::StageSetting& setting, const scene::Scene& s
   return setting.largest_body_force_x() != 0 && setting.fastest_wall() == 0 && !scene.domain.periodic_y;
 }
 
-template <class T, class Set>
-double flow_rate(const core::Fluid<T, Set>& fluid) {
-  const core::Domain<Set::dimension>& domain = fluid.setting().domain;
+template <int D>
+double flow_rate(const core::AnyFluid<D>& fluid) {
+  const core::Domain<D>& domain = fluid.setting().domain;
   const double rate =
       core::flow_rate(fluid.row_velocities(), fluid.walls_now(), domain, fluid.setting().solid != nullptr);
-  if constexpr (Set::dimension == 3) return rate / domain.size[2];
+  if constexpr (D == 3) return rate / domain.size[2];
   return rate;
 }
 
-template double flow_rate(const core::Fluid<float>&);
-template double flow_rate(const core::Fluid<double>&);
-template double flow_rate(const core::Fluid<float, core::D3Q19>&);
-template double flow_rate(const core::Fluid<double, core::D3Q19>&);
+template double flow_rate(const core::AnyFluid<2>&);
+template double flow_rate(const core::AnyFluid<3>&);
 
 double apparent_viscosity(double flow_rate, double body_force, const scene::StageSetting& setting, int height) {
   const double viscosity = core::viscosity_of(setting.tau);

@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "core/fluid/fluid.hpp"
+#include "core/fluid/any_fluid.hpp"
 #include "core/membrane/membranes.hpp"
 #include "scene/stage_scales.hpp"
 #include "snapshot.hpp"
@@ -17,8 +17,8 @@ bool is_driven_channel(const scene::StageSetting& setting, const scene::Scene& s
 /// Integral of the velocity along x over the height, averaged over the length; lattice units. Exact for velocities that
 /// are parabolas in y (midpoint rule with its end correction; the walls' velocity counts as a value). The fluid must be
 /// settled, between steps.
-template <class T, class Set>
-double flow_rate(const core::Fluid<T, Set>& fluid);
+template <int D>
+double flow_rate(const core::AnyFluid<D>& fluid);
 
 /// Flow rate of the suspending fluid alone, G H^3 / (12 mu) of plane Poiseuille flow, over `flow_rate` (lattice): the
 /// relative apparent viscosity of a driven suspension. Not a number where nothing flows but rounding.

@@ -216,21 +216,21 @@ Json save(CellArrays<D> to, const Cells& m) {
 }
 
 /// `writer`: null on ranks that do not write.
-template <class T, class Set>
-Json save(files::CheckpointWriter* writer, core::Solver<T, Set>& solver) {
-  core::Fluid<T, Set>& fluid = solver.fluid();
+template <int D>
+Json save(files::CheckpointWriter* writer, core::AnySolver<D>& solver) {
+  core::AnyFluid<D>& fluid = solver.fluid();
   fluid.settle();
-  const core::Domain<Set::dimension>& domain = fluid.setting().domain;
+  const core::Domain<D>& domain = fluid.setting().domain;
   const auto nx = static_cast<std::size_t>(domain.size[0]), rows = static_cast<std::size_t>(domain.nodes()) / nx;
-  const auto bands = core::bands_of_all<Set::dimension>(domain.size, sizeof(T));
-  for (int q = 0; q < Set::velocity_count; ++q) {
-    if (writer != nullptr) writer->begin_array<T>(population_name(q), rows, nx);
-    fluid.gather_populations(q, bands, [&](int, const std::vector<T>& values) { writer->append(values); });
+  const auto bands = core::bands_of_all<D>(domain.size, sizeof(double));
+  for (int q = 0; q < fluid.populations(); ++q) {
+    if (writer != nullptr) writer->begin_array(population_name(q), rows, nx, fluid.single_precision());
+    fluid.gather_populations(q, bands, [&](int, const std::vector<double>& values) { writer->append(values); });
   }
   if (auto* const tasks = solver.cell_tasks()) {
-    const core::DisplacementWatch::Memory& memory = tasks->viscosity_field().memory();
-    CellArrays<Set::dimension> to(writer, solver.cells(), tasks->ghosts());
-    for (int k = 0; k < Set::dimension; ++k) to.of_nodes(indicator_places[k], memory.position[k]);
+    const core::DisplacementWatch::Memory& memory = tasks->viscosity_memory();
+    CellArrays<D> to(writer, solver.cells(), tasks->ghosts());
+    for (int k = 0; k < D; ++k) to.of_nodes(indicator_places[k], memory.position[k]);
     to.of_cells("/indicator/limit", memory.limit);
     to.of_cells("/indicator/bound", memory.bound);
   }
@@ -276,12 +276,12 @@ void restore_cells(const files::CheckpointReader& reader, const Json& saved, Cel
 }
 
 /// What a block has of an array with a row for each of the lattice's rows.
-template <class T, int D>
-std::vector<T> read_block(const files::CheckpointReader& reader, const std::string& name, const core::Box<D>& block,
-                          const scene::Domain& domain) {
+template <int D>
+std::vector<double> read_block(const files::CheckpointReader& reader, const std::string& name,
+                               const core::Box<D>& block, const scene::Domain& domain) {
   const int width = block.size(0), height = block.size(1), of_lattice = domain.nodes[1];
-  std::vector<T> values(static_cast<std::size_t>(width) * core::row_count(block));
-  T* to = values.data();
+  std::vector<double> values(static_cast<std::size_t>(width) * core::row_count(block));
+  double* to = values.data();
   const auto read_rows = [&](int layer, int layers) {
     reader.block(name, {domain.nodes[0], of_lattice * layers}, {block.begin[0], of_lattice * layer + block.begin[1]},
                  {block.end[0], of_lattice * layer + block.end[1]}, to);
@@ -297,15 +297,13 @@ std::vector<T> read_block(const files::CheckpointReader& reader, const std::stri
 
 }  // namespace
 
-template <class T, class Set>
-void Checkpoints::write(const plan::Plan& plan, int threads, const RunState& state,
-                        const typename core::Solver<T, Set>::Cells& cells, core::Solver<T, Set>& solver) {
+template <int D>
+void Checkpoints::write(const plan::Plan& plan, int threads, const RunState& state, core::AnySolver<D>& solver) {
   pending_ = true;
   step_ = state.steps;
   if (to_ != nullptr) writer_ = std::make_unique<files::CheckpointWriter>(to_->path());
-  const auto* const tasks = solver.cell_tasks();
-  const CellArrays<Set::dimension> of_cells(writer_.get(), cells, tasks != nullptr ? tasks->ghosts() : nullptr);
-  Json saved_membranes = save(of_cells, cells), saved_solver = save(writer_.get(), solver);
+  const CellArrays<D> of_cells(writer_.get(), solver.cells(), solver.ghosts());
+  Json saved_membranes = save(of_cells, solver.cells()), saved_solver = save(writer_.get(), solver);
   if (to_ == nullptr) return;
   writer_->facts(checkpoint_facts(plan, state, threads));
   writer_->state({{"run", state},
@@ -326,20 +324,20 @@ void Checkpoints::settle(bool sound) {
   last_ = Clock::now();
 }
 
-template <class T, class Set>
-Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader, const plan::Plan& plan,
-                    const core::Box<Set::dimension>& block, RunState& state,
-                    typename core::Solver<T, Set>::Cells& cells, const TakePart<Set::dimension>& take_part) {
+template <int D>
+Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, const plan::Plan& plan,
+                 const core::Box<D>& block, RunState& state, typename core::AnySolver<D>::Cells& cells,
+                 const TakePart<D>& take_part) {
   try {
     const Json saved = reader->state();
     saved.at("run").get_to(state);
     require(state.fits(plan, cells), *reader, "counts of another scene");
-    if (take_part) take_part(read_boxes<Set::dimension>(*reader, cells));
+    if (take_part) take_part(read_boxes<D>(*reader, cells));
     restore_cells(*reader, saved.at("membranes"), cells);
     cells.forget(cells.unknown_nodes());
-    core::SolverState<T> solver{
+    core::SolverState solver{
         .populations = [reader, block, domain = plan.scene->domain](
-                           int q) { return read_block<T>(*reader, population_name(q), block, domain); },
+                           int q) { return read_block(*reader, population_name(q), block, domain); },
         .walls_have_acted = saved.at("solver").at("walls_have_acted"),
         .steps = state.stage_step,
         .flow_control = {},
@@ -353,7 +351,7 @@ Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader
       core::DisplacementWatch::Memory& memory = solver.viscosity;
       memory = core::DisplacementWatch::Memory(cells);
       const std::vector<Range> known = cells.known_nodes();
-      for (int k = Set::dimension - 1; k >= 0; --k) read(*reader, indicator_places[k], known, memory.position[k]);
+      for (int k = D - 1; k >= 0; --k) read(*reader, indicator_places[k], known, memory.position[k]);
       read(*reader, "/indicator/limit", memory.limit);
       read(*reader, "/indicator/bound", memory.bound);
     }
@@ -363,16 +361,11 @@ Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader
   }
 }
 
-#define ROULEAU_INSTANTIATE(T, Set)                                                                              \
-  template void Checkpoints::write(const plan::Plan&, int, const RunState&,                                      \
-                                   const typename core::Solver<T, Set>::Cells&, core::Solver<T, Set>&);          \
-  template Restored<T> restore<T, Set>(const std::shared_ptr<const files::CheckpointReader>&, const plan::Plan&, \
-                                       const core::Box<Set::dimension>&, RunState&,                              \
-                                       typename core::Solver<T, Set>::Cells&, const TakePart<Set::dimension>&);
-ROULEAU_INSTANTIATE(float, core::D2Q9)
-ROULEAU_INSTANTIATE(double, core::D2Q9)
-ROULEAU_INSTANTIATE(float, core::D3Q19)
-ROULEAU_INSTANTIATE(double, core::D3Q19)
-#undef ROULEAU_INSTANTIATE
+template void Checkpoints::write(const plan::Plan&, int, const RunState&, core::AnySolver<2>&);
+template Restored restore<2>(const std::shared_ptr<const files::CheckpointReader>&, const plan::Plan&,
+                             const core::Box<2>&, RunState&, core::Membranes&, const TakePart<2>&);
+template void Checkpoints::write(const plan::Plan&, int, const RunState&, core::AnySolver<3>&);
+template Restored restore<3>(const std::shared_ptr<const files::CheckpointReader>&, const plan::Plan&,
+                             const core::Box<3>&, RunState&, core::Surfaces&, const TakePart<3>&);
 
 }  // namespace rouleau::run

@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/solver/solver.hpp"
+#include "core/solver/any_solver.hpp"
 #include "files/checkpoint_file.hpp"
 #include "files/run_directory.hpp"
 #include "json/json.hpp"
@@ -31,9 +31,8 @@ class Checkpoints {
     return wanted() && std::chrono::duration<double>(Clock::now() - last_).count() >= *seconds_;
   }
   /// Writes the file, beside the last one. All ranks together, between two steps whose messages have been taken.
-  template <class T, class Set>
-  void write(const plan::Plan& plan, int threads, const RunState& state,
-             const typename core::Solver<T, Set>::Cells& cells, core::Solver<T, Set>& solver);
+  template <int D>
+  void write(const plan::Plan& plan, int threads, const RunState& state, core::AnySolver<D>& solver);
   [[nodiscard]] bool pending() const { return pending_; }
   /// The file takes its place if the state has been found sound. One that is not is left to the next regular check:
   /// when checkpoints are written must not change what becomes of a run.
@@ -55,9 +54,8 @@ class Checkpoints {
 };
 
 /// What a checkpoint holds beside the run's state and the membranes.
-template <class T>
 struct Restored {
-  core::SolverState<T> solver;     ///< which keeps the file open
+  core::SolverState solver;        ///< which keeps the file open
   files::DirectoryMark directory;  ///< how far the files of the directory had come
 };
 /// Finds this rank's part in the cells with these boxes, and tells the cells (GhostCells::set_parts).
@@ -66,9 +64,9 @@ using TakePart = std::function<void(const std::vector<core::BoundingBox<D>>& box
 /// Into the state and the cells of the same scene; `block`: of the lattice, that the solver will compute; `take_part`: null
 /// without other ranks. No memory is taken for what others alone know of cells. Throws Error(input_output) where the
 /// checkpoint does not fit.
-template <class T, class Set = core::D2Q9>
-Restored<T> restore(const std::shared_ptr<const files::CheckpointReader>& reader, const plan::Plan& plan,
-                    const core::Box<Set::dimension>& block, RunState& state,
-                    typename core::Solver<T, Set>::Cells& cells, const TakePart<Set::dimension>& take_part = {});
+template <int D>
+Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, const plan::Plan& plan,
+                 const core::Box<D>& block, RunState& state, typename core::AnySolver<D>::Cells& cells,
+                 const TakePart<D>& take_part = {});
 
 }  // namespace rouleau::run

@@ -99,7 +99,7 @@ Error refusal(const std::filesystem::path& file, const Json& facts, const std::v
 }  // namespace
 
 Json checkpoint_facts(const plan::Plan& plan, const RunState& state, int threads) {
-  const plan::StageSetting& setting = plan.stages[state.stage];
+  const scene::StageSetting& setting = plan.stages[state.stage];
   Json plugins = Json::array();
   for (const plan::PlannedModel* model : plan.active_models()) plugins.push_back(plugin_facts(*model->manifest));
   return {{"program", program_version()},

@@ -68,7 +68,7 @@ Summary describe(const plan::Plan& plan, const plan::PlanReport& report, int thr
   s.machine = machine_description();
   s.started = present_time();
   s.threads = threads;
-  for (const plan::StageSetting& stage : plan.stages) s.steps_at_most += stage.max_steps;
+  for (const scene::StageSetting& stage : plan.stages) s.steps_at_most += stage.max_steps;
   s.dimensions = scene.domain.dimension();
   s.precision = scene.numerics.precision == scene::Precision::f64 ? "f64" : "f32";
   s.instruction_set = name_of(instruction_set());

@@ -60,14 +60,14 @@ struct RunState {
   std::vector<StageEnd> stages;  ///< those that are over
   std::vector<Continuation> resumed;
 
-  [[nodiscard]] double time_at(const plan::StageSetting& setting) const {
+  [[nodiscard]] double time_at(const scene::StageSetting& setting) const {
     return time + static_cast<double>(stage_step) * setting.units.time;
   }
-  [[nodiscard]] double strain_at(const plan::StageSetting& setting) const {
+  [[nodiscard]] double strain_at(const scene::StageSetting& setting) const {
     return strain + setting.strain_after(stage_step);
   }
   /// The stage is over: what it took is added up.
-  void end_stage(const plan::StageSetting& setting, Ending ended_by) {
+  void end_stage(const scene::StageSetting& setting, Ending ended_by) {
     time = time_at(setting);
     strain = strain_at(setting);
     stages.push_back({setting.stage->name, stage_step, ended_by, stage_wall});

@@ -8,24 +8,14 @@
 
 namespace rouleau::run {
 
-namespace {
-
-/// Which cells are whose; null: all are this rank's.
-template <class T, class Set>
-const core::GhostCells<Set::dimension>* ghosts(const core::Solver<T, Set>& solver) {
-  return solver.cell_tasks() != nullptr ? solver.cell_tasks()->ghosts() : nullptr;
-}
-
-}  // namespace
-
-template <class T, class Set>
-void StageCourse::begin(const core::Solver<T, Set>& solver) {
+template <int D>
+void StageCourse::begin(const core::AnySolver<D>& solver) {
   state_.observer.start_stage();
   state_.stage_step = 0;
   state_.steps_before = state_.steps;
   state_.stage_wall = 0;
   state_.rest_watch.stop();
-  if (setting().stage->until_at_rest) state_.rest_watch.start(0, solver.cells(), ghosts(solver));
+  if (setting().stage->until_at_rest) state_.rest_watch.start(0, solver.cells(), solver.ghosts());
   state_.equilibrium.start();
 }
 
@@ -33,11 +23,11 @@ bool StageCourse::compares_positions() const {
   return setting().stage->until_at_rest && state_.stage_step >= state_.rest_watch.end(rest_window());
 }
 
-template <class T, class Set>
-Ending StageCourse::ending(const core::Solver<T, Set>& solver) const {
+template <int D>
+Ending StageCourse::ending(const core::AnySolver<D>& solver) const {
   const scene::Stage& stage = *setting().stage;
   if (compares_positions()) {
-    const double moved = state_.rest_watch.moved(solver.cells(), ghosts(solver));
+    const double moved = state_.rest_watch.moved(solver.cells(), solver.ghosts());
     if (core::of_first(solver.ranks(), moved) < plan_.scene->at_rest.displacement / setting().units.length)
       return Ending::at_rest;
   }
@@ -48,18 +38,18 @@ Ending StageCourse::ending(const core::Solver<T, Set>& solver) const {
   return by_strain ? Ending::strain : Ending::duration;
 }
 
-template <class T, class Set>
-Ending StageCourse::end(const core::Solver<T, Set>& solver) {
+template <int D>
+Ending StageCourse::end(const core::AnySolver<D>& solver) {
   const Ending found = ending(solver);
   // The window by which a stage has ended stays: a checkpoint of this step ends it again.
   if (found == Ending::none && compares_positions())
-    state_.rest_watch.start(state_.stage_step, solver.cells(), ghosts(solver));
+    state_.rest_watch.start(state_.stage_step, solver.cells(), solver.ghosts());
   return found;
 }
 
-template <class T, class Set>
-void StageCourse::look(core::Solver<T, Set>& solver) {
-  const plan::StageSetting& setting = this->setting();
+template <int D>
+void StageCourse::look(core::AnySolver<D>& solver) {
+  const scene::StageSetting& setting = this->setting();
   if (!setting.stage->until_equilibrium || state_.stage_step < state_.equilibrium.next(energy_window())) return;
   const observe::CellEnergy energy = observe::cell_energy(solver);
   if (!energy.unknown.empty()) {
@@ -71,16 +61,14 @@ void StageCourse::look(core::Solver<T, Set>& solver) {
                           plan_.scene->equilibrium.rate * setting.units.time);
 }
 
-#define ROULEAU_INSTANTIATE(T, Set)                                       \
-  template void StageCourse::begin(const core::Solver<T, Set>&);          \
-  template Ending StageCourse::ending(const core::Solver<T, Set>&) const; \
-  template Ending StageCourse::end(const core::Solver<T, Set>&);          \
-  template void StageCourse::look(core::Solver<T, Set>&);
-ROULEAU_INSTANTIATE(float, core::D2Q9)
-ROULEAU_INSTANTIATE(double, core::D2Q9)
-ROULEAU_INSTANTIATE(float, core::D3Q19)
-ROULEAU_INSTANTIATE(double, core::D3Q19)
-#undef ROULEAU_INSTANTIATE
+template void StageCourse::begin(const core::AnySolver<2>&);
+template Ending StageCourse::ending(const core::AnySolver<2>&) const;
+template Ending StageCourse::end(const core::AnySolver<2>&);
+template void StageCourse::look(core::AnySolver<2>&);
+template void StageCourse::begin(const core::AnySolver<3>&);
+template Ending StageCourse::ending(const core::AnySolver<3>&) const;
+template Ending StageCourse::end(const core::AnySolver<3>&);
+template void StageCourse::look(core::AnySolver<3>&);
 
 long StageCourse::next() const {
   const scene::Stage& stage = *setting().stage;

@@ -1,7 +1,7 @@
 // The course of a stage, step by step: what has been taken of it, and when its scene ends it.
 #pragma once
 
-#include "core/solver/solver.hpp"
+#include "core/solver/any_solver.hpp"
 #include "plan/plan.hpp"
 #include "run_state.hpp"
 
@@ -15,27 +15,27 @@ class StageCourse {
   /// Both must outlive it.
   StageCourse(const plan::Plan& plan, RunState& state) : plan_(plan), state_(state) {}
 
-  [[nodiscard]] const plan::StageSetting& setting() const { return plan_.stages[state_.stage]; }
+  [[nodiscard]] const scene::StageSetting& setting() const { return plan_.stages[state_.stage]; }
   [[nodiscard]] bool is_last() const { return state_.stage + 1 == static_cast<int>(plan_.stages.size()); }
 
   /// The stage begins.
-  template <class T, class Set>
-  void begin(const core::Solver<T, Set>& solver);
+  template <int D>
+  void begin(const core::AnySolver<D>& solver);
   /// So many steps of the stage have been taken.
   void count_to(long step) {
     state_.stage_step = step;
     state_.steps = state_.steps_before + step;
   }
   /// What ends the stage here: at_rest, equilibrium, strain, duration or none.
-  template <class T, class Set>
-  [[nodiscard]] Ending ending(const core::Solver<T, Set>& solver) const;
+  template <int D>
+  [[nodiscard]] Ending ending(const core::AnySolver<D>& solver) const;
   /// The same, before the forces of a step: where a window of rest is over the next one begins.
-  template <class T, class Set>
-  Ending end(const core::Solver<T, Set>& solver);
+  template <int D>
+  Ending end(const core::AnySolver<D>& solver);
   /// Forces computed: the energy of the cells, where the stage ends by it and a window is over. Throws Error(bad_input)
   /// where it is unknown.
-  template <class T, class Set>
-  void look(core::Solver<T, Set>& solver);
+  template <int D>
+  void look(core::AnySolver<D>& solver);
   /// The next step, after look(), at which the stage may end.
   [[nodiscard]] long next() const;
 

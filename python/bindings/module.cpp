@@ -192,7 +192,7 @@ py::dict cells(Session& session) {
 
 py::dict stage(Session& session) {
   Simulation& simulation = session.simulation();
-  const plan::StageSetting& setting = simulation.stage();
+  const scene::StageSetting& setting = simulation.stage();
   py::dict result;
   result["name"] = setting.stage->name;
   result["index"] = setting.index;

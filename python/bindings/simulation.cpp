@@ -1,26 +1,19 @@
 #include "simulation.hpp"
-#include "plan/placed_cells.hpp"
-
-#include <omp.h>
 
 #include <algorithm>
-#include <cmath>
-#include <exception>
-#include <optional>
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/signal_stack.hpp"
 #include "core/membrane/motion.hpp"
-#include "core/solver/solver.hpp"
 #include "files/run_directory.hpp"
 #include "monitor/node_checks.hpp"
 #include "monitor/state_checks.hpp"
-#include "plan/solver_setup.hpp"
 #include "run/checkpoint.hpp"
 #include "run/checkpoint_match.hpp"
+#include "run/engine.hpp"
 #include "run/run_state.hpp"
 #include "run/stage_course.hpp"
+#include "run/stepper.hpp"
 
 namespace rouleau::python {
 
@@ -34,19 +27,16 @@ struct Remembered {
   core::ContactMemory contacts, wall_contacts;
 };
 
-/// T: of the populations; Set: D2Q9 or D3Q19. The order of what happens in a step is that of run/simulation.cpp, so that the bits are the same.
-template <class T, class Set>
-class SimulationOf final : public Simulation {
+template <int D>
+class SimulationOf final : public Simulation, run::StepHooks {
  public:
-  static constexpr int dimension = Set::dimension;
-  using Solver = core::Solver<T, Set>;
-
   SimulationOf(plan::ReadScene read, plugin::Catalog catalog)
       : Simulation(std::move(read), std::move(catalog)),
-        cells_(plan_.has_cells ? plan::make_cells<dimension>(scene()) : plan::Cells<dimension>{}),
-        state_(observe::Observer(scene(), cells_)),
+        state_(observe::Observer(scene())),
+        engine_(plan_),
         course_(plan_, state_) {
-    start_stage(nullptr);
+    engine_.begin(engine_.place_cells(state_.observer));
+    begin_stage();
   }
 
   long step(long count, int threads) override {
@@ -54,7 +44,9 @@ class SimulationOf final : public Simulation {
     long taken = 0;
     while (taken < count && !over_) {
       const long before = state_.stage_step;
-      step_stage(count - taken, threads);
+      whole_ = false;
+      course_.count_to(stepper_.take(engine_.solver().passes(), before, before + count - taken, threads));
+      whole_ = true;
       taken += state_.stage_step - before;
       if (ending_ != run::Ending::none) next_stage();
     }
@@ -63,27 +55,21 @@ class SimulationOf final : public Simulation {
 
   void compute_forces() override {
     require_whole();
-    if (ready_) return;
+    if (stepper_.forces_known()) return;
     remember();
     whole_ = false;
-    if (state_.stage_step >= next_attention_) before_forces(state_.stage_step);
-    core::Barrier nobody(1);
-    const auto run = [&](std::size_t from, std::size_t to) {
-      core::run_passes(solver_->passes(), from, to, solver_->bands(), Worker{}, nobody, nullptr);
-    };
-    run(0, solver_->rows_pass());
-    if (add_force_) add_force_();
-    run(solver_->rows_pass(), solver_->observable_pass());
-    ready_ = whole_ = true;
+    stepper_.compute_forces(engine_.solver().passes(), state_.stage_step);
+    whole_ = true;
   }
 
   FluidFields fluid() override {
     compute_forces();
-    solver_->fluid().settle();
+    core::AnyFluid<D>& fluid = engine_.solver().fluid();
+    fluid.settle();
     FluidFields fields;
-    for (const int nodes : plan::lattice_domain<dimension>(scene()).size) fields.size.push_back(nodes);
+    for (const int nodes : fluid.setting().domain.size) fields.size.push_back(nodes);
     const double speed = stage().units.unit(units::dimension::velocity);
-    for (const auto& node : solver_->fluid().all_moments()) {
+    for (const auto& node : fluid.all_moments()) {
       for (const double component : node.velocity) fields.velocity.push_back(component * speed);
       fields.density.push_back(node.density);
     }
@@ -92,7 +78,7 @@ class SimulationOf final : public Simulation {
 
   observe::Snapshot observe() override {
     compute_forces();
-    observe::Snapshot snapshot = state_.observer.observe(*solver_, stage(), cells_, false);
+    observe::Snapshot snapshot = state_.observer.observe(engine_.solver(), stage(), false);
     course_.date(snapshot);
     return snapshot;
   }
@@ -108,20 +94,21 @@ class SimulationOf final : public Simulation {
 
   void save(const fs::path& directory) override {
     require_whole();
-    if (ready_ && solver_->flow_control()) {
+    const bool ready = stepper_.forces_known();
+    if (ready && engine_.solver().flow_control()) {
       throw Error(Cause::bad_input,
                   "the forces of the next step have been read, and the scene keeps a mean velocity: the state "
                   "between two steps is gone",
                   {"save before forces, fluid or cells are read, or after the next step"});
     }
-    if (ready_) exchange_memories();
+    if (ready) exchange_memories();
     const auto back = [&] {
-      if (ready_) exchange_memories();
+      if (ready) exchange_memories();
     };
     try {
       files::RunDirectory to(directory, scene(), files::FormerRun::replace);
       run::Checkpoints checkpoints(scene(), &to);
-      checkpoints.write(plan_, 1, state_, cells_, *solver_);
+      checkpoints.write(plan_, 1, state_, engine_.solver());
       checkpoints.settle(true);
     } catch (...) {
       back();
@@ -132,27 +119,27 @@ class SimulationOf final : public Simulation {
 
   void restore(const fs::path& directory) override {
     run::Resumption resumption = run::open_checkpoint(directory, plan_, false);
-    const std::shared_ptr<const files::CheckpointReader> reader = std::move(resumption.checkpoint);
     whole_ = false;
-    run::RunState state(observe::Observer(scene(), cells_));
-    auto restored = run::restore<T, Set>(reader, plan_, plan::lattice_domain<dimension>(scene()).block, state, cells_);
+    run::RunState state{observe::Observer(scene())};
+    files::DirectoryMark of_no_interest;
+    auto start = engine_.restore_cells(std::move(resumption.checkpoint), state, of_no_interest);
     state_ = std::move(state);
-    solver_ = std::make_unique<Solver>(plan::make_solver_setup<dimension>(plan_, state_.stage), cells_);
-    solver_->start(std::move(restored.solver));
-    next_attention_ = state_.stage_step;
+    engine_.begin(std::move(start));
+    stepper_.attend_next(state_.stage_step);
+    stepper_.forget_forces();
     ending_ = run::Ending::none;
-    ready_ = over_ = false;
+    over_ = false;
     whole_ = true;
   }
 
   [[nodiscard]] bool done() const override {
-    return over_ || (course_.is_last() && course_.ending(*solver_) != run::Ending::none);
+    return over_ || (course_.is_last() && course_.ending(engine_.solver()) != run::Ending::none);
   }
   [[nodiscard]] long steps() const override { return state_.steps; }
   [[nodiscard]] double time() const override { return state_.time_at(stage()); }
   [[nodiscard]] double strain() const override { return state_.strain_at(stage()); }
-  [[nodiscard]] const plan::StageSetting& stage() const override { return course_.setting(); }
-  [[nodiscard]] core::CellNodes& nodes() override { return cells_; }
+  [[nodiscard]] const scene::StageSetting& stage() const override { return course_.setting(); }
+  [[nodiscard]] core::CellNodes& nodes() override { return engine_.cells(); }
 
  private:
   void require_whole() const {
@@ -162,116 +149,60 @@ class SimulationOf final : public Simulation {
   }
 
   void remember() {
-    if constexpr (dimension == 2) remembered_ = {cells_.state, cells_.contacts, cells_.wall_contacts};
+    const auto& cells = engine_.cells();
+    if constexpr (D == 2) remembered_ = {cells.state, cells.contacts, cells.wall_contacts};
   }
   /// The cells get what they remembered before the forces of the next step, and the other way round.
   void exchange_memories() {
-    if constexpr (dimension == 2) {
-      std::swap(cells_.state, remembered_.state);
-      std::swap(cells_.contacts, remembered_.contacts);
-      std::swap(cells_.wall_contacts, remembered_.wall_contacts);
+    if constexpr (D == 2) {
+      auto& cells = engine_.cells();
+      std::swap(cells.state, remembered_.state);
+      std::swap(cells.contacts, remembered_.contacts);
+      std::swap(cells.wall_contacts, remembered_.wall_contacts);
     }
   }
 
-  void start_stage(Solver* former) {
-    auto next = std::make_unique<Solver>(plan::make_solver_setup<dimension>(plan_, state_.stage), cells_);
-    next->start(former);
-    solver_ = std::move(next);
-    course_.begin(*solver_);
-    next_attention_ = 0;
+  void begin_stage() {
+    course_.begin(engine_.solver());
+    stepper_.attend_next(0);
+    stepper_.forget_forces();
   }
 
   void next_stage() {
     const run::Ending ending = std::exchange(ending_, run::Ending::none);
-    over_ = ready_ = course_.is_last();  // the forces at the end of a stage are computed
+    over_ = course_.is_last();  // the forces at its end stay known
     if (over_) return;
     state_.end_stage(stage(), ending);
-    ++state_.stage;
-    start_stage(solver_.get());
+    engine_.begin_stage(++state_.stage);
+    begin_stage();
   }
 
-  /// So many steps, or to the end of the stage, which ending_ then tells.
-  void step_stage(long count, int threads) {
-    std::exception_ptr trouble;
-    std::optional<core::Barrier> barrier;
-    const long first = state_.stage_step;
-    whole_ = false;
-#pragma omp parallel num_threads(threads)
-    {
-      thread_local const SignalStack stack;
-      // The system may grant fewer threads than were asked for.
-#pragma omp single
-      barrier.emplace(omp_get_num_threads());
-      try {
-        take_steps({omp_get_thread_num(), omp_get_num_threads()}, *barrier, first, first + count);
-      } catch (const core::Barrier::Abandoned&) {
-        // The worker that has given up says why.
-      } catch (...) {
-        if (barrier->abandon()) trouble = std::current_exception();
-      }
-    }
-    if (trouble) std::rethrow_exception(trouble);
-    whole_ = true;
+  [[nodiscard]] bool adds_forces() const override { return add_force_ != nullptr; }
+  void add_forces() override { add_force_(); }
+  [[nodiscard]] bool wants_a_look() const override {
+    return !(core::largest_step(engine_.cells()) <= scene().checks.node_step) || engine_.solver().escaped();
   }
 
-  void take_steps(Worker worker, core::Barrier& barrier, long step, long last) {
-    const std::vector<core::Pass>& passes = solver_->passes();
-    const std::size_t rows = solver_->rows_pass(), observable = solver_->observable_pass();
-    const auto alone = [&](auto&& action) {
-      barrier.arrive_and_wait();
-      if (worker.first()) action();
-      barrier.arrive_and_wait();
-    };
-    const auto run = [&](std::size_t from, std::size_t to) {
-      core::run_passes(passes, from, to, solver_->bands(), worker, barrier, nullptr);
-    };
-    bool ready = ready_;
-    for (; step < last; ++step) {
-      const bool attend = step >= next_attention_;
-      if (!ready) {
-        if (attend) alone([&] { before_forces(step); });
-        run(0, rows);
-        if (add_force_) alone(add_force_);
-      }
-      if (attend || wants_a_look()) {
-        if (!ready) run(rows, observable);
-        alone([&] { after_forces(step, attend); });
-        if (ending_ != run::Ending::none) break;
-        run(observable, passes.size());
-      } else {
-        run(ready ? observable : rows, passes.size());
-      }
-      ready = false;
-    }
-    barrier.arrive_and_wait();
-    if (!worker.first()) return;
-    ready_ = false;
+  bool before_forces(long step) override {
     course_.count_to(step);
-  }
-
-  /// The last step must not be followed by another; all workers come to the same answer.
-  [[nodiscard]] bool wants_a_look() const {
-    return !(core::largest_step(cells_) <= scene().checks.node_step) || solver_->escaped();
-  }
-
-  void before_forces(long step) {
-    course_.count_to(step);
-    due_ending_ = course_.end(*solver_);
+    due_ending_ = course_.end(engine_.solver());
     if (due_ending_ != run::Ending::none) remember();
+    return true;
   }
 
-  void after_forces(long step, bool attended) {
+  bool after_forces(long step, bool attended) override {
+    core::AnySolver<D>& solver = engine_.solver();
     course_.count_to(step);
-    if (auto failure = monitor::check_nodes(*solver_, scene().checks.node_step, stage())) fail(std::move(*failure));
-    if (!attended) return;
+    if (auto failure = monitor::check_nodes(solver, scene().checks.node_step, stage())) fail(std::move(*failure));
+    if (!attended) return true;
     const long every = scene().checks.every_steps;
     if (step % every == 0 || due_ending_ != run::Ending::none) {
-      if (auto failure = monitor::check_state(state_.observer, *solver_, stage(), cells_, plan_))
-        fail(std::move(*failure));
+      if (auto failure = monitor::check_state(state_.observer, solver, stage(), plan_)) fail(std::move(*failure));
     }
     ending_ = due_ending_;
-    course_.look(*solver_);
-    next_attention_ = std::min((step / every + 1) * every, course_.next());
+    course_.look(solver);
+    stepper_.attend_next(std::min((step / every + 1) * every, course_.next()));
+    return ending_ == run::Ending::none;
   }
 
   [[noreturn]] void fail(monitor::Failure failure) {
@@ -279,17 +210,15 @@ class SimulationOf final : public Simulation {
     throw Diverged{std::move(failure)};
   }
 
-  plan::Cells<dimension> cells_;
   run::RunState state_;
+  run::Engine<D> engine_;
   run::StageCourse course_;
-  std::unique_ptr<Solver> solver_;
+  run::Stepper stepper_{*this};
   std::function<void()> add_force_;
-  Remembered remembered_;    ///< before the forces that are ready were computed
-  long next_attention_ = 0;  ///< step of the stage at which something is due
+  Remembered remembered_;  ///< before the forces that are known were computed
   run::Ending due_ending_ = run::Ending::none, ending_ = run::Ending::none;
-  bool ready_ = false;  ///< the forces of the next step are computed
-  bool over_ = false;   ///< the last stage has ended
-  bool whole_ = true;   ///< false: a step has ended in the middle
+  bool over_ = false;  ///< the last stage has ended
+  bool whole_ = true;  ///< false: a step has ended in the middle
 };
 
 }  // namespace
@@ -311,13 +240,8 @@ std::unique_ptr<Simulation> make_simulation(const SceneChoice& choice) {
   };
   plan::ReadScene read = plan::read_within_limits(choice.file, choice.overrides, catalog_of);
   plugin::Catalog catalog = catalog_of(read.scene);
-  const bool space = read.scene.domain.depth.has_value();
-  const auto make = [&]<class T, class Set>(T, Set) -> std::unique_ptr<Simulation> {
-    return std::make_unique<SimulationOf<T, Set>>(std::move(read), std::move(catalog));
-  };
-  if (read.scene.numerics.precision == scene::Precision::f32)
-    return space ? make(float{}, core::D3Q19{}) : make(float{}, core::D2Q9{});
-  return space ? make(double{}, core::D3Q19{}) : make(double{}, core::D2Q9{});
+  if (read.scene.domain.depth) return std::make_unique<SimulationOf<3>>(std::move(read), std::move(catalog));
+  return std::make_unique<SimulationOf<2>>(std::move(read), std::move(catalog));
 }
 
 }  // namespace rouleau::python

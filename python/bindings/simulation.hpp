@@ -58,7 +58,7 @@ class Simulation {
   [[nodiscard]] virtual long steps() const = 0;
   [[nodiscard]] virtual double time() const = 0;  ///< s
   [[nodiscard]] virtual double strain() const = 0;
-  [[nodiscard]] virtual const plan::StageSetting& stage() const = 0;
+  [[nodiscard]] virtual const scene::StageSetting& stage() const = 0;
   /// Of all cells; what is along z is empty in two dimensions.
   [[nodiscard]] virtual core::CellNodes& nodes() = 0;
   [[nodiscard]] const scene::Scene& scene() const { return read_.scene; }

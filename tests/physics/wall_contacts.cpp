@@ -211,8 +211,8 @@ TEST_CASE("the walls' shear stress is that of the flow and of the cell's particl
     const double stress = viscosity_of(stage.tau) * stage.shear_rate;
     const double walls = (wall.lower - wall.upper) / 2 / stress - 1;
     const double particle = particle_stress(bench.membranes, bench.scene, viscosity_of(stage.tau)) / stress;
-    const double residual = Observer::momentum_residual(
-        bench.membranes, {bench.solver->cell_tasks()->wall_contacts()->net_force(bench.membranes), 0});
+    const double residual =
+        Observer::momentum_residual(bench.membranes, bench.solver->cell_tasks()->force_from_walls());
     const double without = Observer::momentum_residual(bench.membranes);
     bench.solver->advance();
     std::cout << "sheared ring, held: gap " << gap_of(bench) << " spacings, viscosity - 1 by the walls " << walls

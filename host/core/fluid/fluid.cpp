@@ -16,11 +16,9 @@ namespace rouleau::core {
 
 template <class T, class Set>
 Fluid<T, Set>::Fluid(const FluidSetting<dimension>& setting, CollisionOperator collision, const Ranks<dimension>& ranks)
-    : setting_(setting),
-      ranks_(ranks),
+    : Any(setting, ranks),
       collision_(std::move(collision)),
       lattice_(setting.domain),
-      last_walls_(setting.walls),
       mask_(setting.domain, setting.solid.get()) {
   if constexpr (std::is_same_v<T, double>) {
     collide_ = collision_.table->collide_f64;
@@ -401,11 +399,11 @@ void Fluid<T, Set>::copy_relaxation_rates(int i, double* to) const {
 }
 
 template <class T, class Set>
-void Fluid<T, Set>::copy_population(int q, int i, T* to) const {
+void Fluid<T, Set>::copy_population(int q, int i, double* to) const {
   const T* in[velocity_count];
   lattice_.row_pointers(parity_, lattice_.row(i), in);
   std::copy_n(in[q], nx(), to);
-  mask_.for_solid(i, [&](int begin, int end) { std::fill(to + begin, to + end, T(0)); });
+  mask_.for_solid(i, [&](int begin, int end) { std::fill(to + begin, to + end, 0.0); });
 }
 
 template <class T, class Set>
@@ -421,18 +419,9 @@ void Fluid<T, Set>::gather_relaxation_rates(const Bands<dimension>& bands, const
 }
 
 template <class T, class Set>
-void Fluid<T, Set>::gather_populations(int q, const Bands<dimension>& bands, const Take<T>& take) const {
-  gather_bands<T>(
-      ranks_, setting_.domain, bands, [&](int i, T* to) { copy_population(q, i, to); }, take);
-}
-
-template <class T, class Set>
-auto Fluid<T, Set>::all_moments() const -> std::vector<NodeMoments> {
-  std::vector<NodeMoments> all;
-  if (ranks_.first()) all.reserve(static_cast<std::size_t>(setting_.domain.nodes()));
-  gather_moments(bands_of_all<dimension>(setting_.domain.size, sizeof(NodeMoments)),
-                 [&](int, const std::vector<NodeMoments>& band) { all.insert(all.end(), band.begin(), band.end()); });
-  return all;
+void Fluid<T, Set>::gather_populations(int q, const Bands<dimension>& bands, const Take<double>& take) const {
+  gather_bands<double>(
+      ranks_, setting_.domain, bands, [&](int i, double* to) { copy_population(q, i, to); }, take);
 }
 
 template <class T, class Set>
@@ -483,11 +472,6 @@ std::vector<double> Fluid<T, Set>::row_velocities_without_membranes() const {
   });
   for (double& mean : means) mean += links_ ? 0 : setting_.body_force[0] / 2;
   return means;
-}
-
-template <class T, class Set>
-double Fluid<T, Set>::mass() const {
-  return mass_and_speed().mass;
 }
 
 template <class T, class Set>
@@ -693,20 +677,20 @@ void Fluid<T, Set>::restart_links() {
 }
 
 template <class T, class Set>
-void Fluid<T, Set>::copy_populations(int q, std::vector<T>& values) const {
+void Fluid<T, Set>::copy_populations(int q, std::vector<double>& values) const {
   values.resize(static_cast<std::size_t>(nx()) * static_cast<std::size_t>(lattice_.rows()));
   for (int i = 0; i < lattice_.rows(); ++i)
     copy_population(q, i, values.data() + static_cast<std::ptrdiff_t>(nx()) * i);
 }
 
 template <class T, class Set>
-void Fluid<T, Set>::restore(const std::function<std::vector<T>(int)>& populations, bool walls_have_acted) {
+void Fluid<T, Set>::restore(const std::function<std::vector<double>(int)>& populations, bool walls_have_acted) {
   parity_ = Parity::even;
   walls_have_acted_ = walls_have_acted;
   last_walls_ = setting_.walls;
   for (int q = 0; q < velocity_count; ++q) {
-    const std::vector<T> values = populations(q);
-    const T* from = values.data();
+    const std::vector<double> values = populations(q);
+    const double* from = values.data();
     for (int i = 0; i < lattice_.rows(); ++i, from += nx()) std::copy_n(from, nx(), lattice_.slot(q, lattice_.row(i)));
   }
   for (int i = 0; i < lattice_.rows(); ++i) send_row(lattice_, lattice_.row(i));

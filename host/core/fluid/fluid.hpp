@@ -2,15 +2,13 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <functional>
 #include <memory>
 #include <type_traits>
 #include <vector>
 
+#include "any_fluid.hpp"
 #include "base/worker.hpp"
-#include "core/domain/bands.hpp"
-#include "core/domain/domain.hpp"
 #include "core/domain/halo.hpp"
 #include "core/model/model.hpp"
 #include "edge_nodes.hpp"
@@ -23,47 +21,25 @@
 
 namespace rouleau::core {
 
-/// What a fluid is made of. Lattice units.
-template <int D>
-struct FluidSetting {
-  Domain<D> domain;        ///< periodic along x
-  double relaxation_rate;  ///< 1/tau of the suspending fluid
-  /// Viscosity at each height y of the lattice over that of `relaxation_rate` (layers.hpp); empty: 1 everywhere.
-  std::vector<double> viscosity_of_rows = {};
-  bool inertia = false;  ///< initial states include the quadratic terms of the equilibrium
-  WallVelocity walls = {};
-  std::array<double, D> body_force = {};  ///< force density everywhere
-  bool membranes = false;                 ///< keep force and velocity where nodes are active
-  int stencil_above = 2;  ///< how far above the node below a membrane's own a stencil reaches; one less below it
-  bool viscosity_contrast = false;  ///< keep a relaxation rate where nodes are active
-  /// Walls of any shape, at rest; null: none. In three dimensions only.
-  std::shared_ptr<const SolidNodes<D>> solid = {};
-};
-
-/// Moments of one node before collision.
-template <int D>
-struct Moments {
-  double density;                  ///< deviation from 1
-  std::array<double, D> velocity;  ///< with half the force
-};
-
 /// So many rows of a block, from its first one on and up to its last one.
 struct EndRows {
   int below = 0, above = 0;
 };
 
 template <class T, class Set = D2Q9>
-class Fluid {
+class Fluid final : public AnyFluid<Set::dimension> {
+  using Any = AnyFluid<Set::dimension>;
+
  public:
   static constexpr int dimension = Set::dimension, velocity_count = Set::velocity_count;
   using Row = typename Lattice<T, Set>::Row;
-  using NodeMoments = Moments<dimension>;
+  using typename Any::NodeMoments, typename Any::MassAndSpeed, typename Any::Energetics;
+  template <class V>
+  using Take = typename Any::template Take<V>;
 
   /// `ranks`: who holds the other blocks, if the domain's block is not the whole lattice; used as long as the fluid lives.
   Fluid(const FluidSetting<dimension>& setting, CollisionOperator collision, const Ranks<dimension>& ranks = {});
 
-  [[nodiscard]] const FluidSetting<dimension>& setting() const { return setting_; }
-  [[nodiscard]] const Ranks<dimension>& ranks() const { return ranks_; }
   /// All rows of the block (Lattice::row).
   [[nodiscard]] Range rows() const { return {0, lattice_.rows()}; }
   [[nodiscard]] NodeMask& mask() { return mask_; }
@@ -98,11 +74,6 @@ class Fluid {
   /// What drives the next steps, where that changes with time: the speeds of the walls during a step, and the force
   /// along x at its beginning. One worker, between steps.
   void set_drive(const WallVelocity& walls, double body_force_x);
-  /// Speeds of the walls during the last step, and now; setting() has those of the next step.
-  [[nodiscard]] const WallVelocity& last_walls() const { return last_walls_; }
-  [[nodiscard]] WallVelocity walls_now() const {
-    return {(last_walls_.lower + setting_.walls.lower) / 2, (last_walls_.upper + setting_.walls.upper) / 2};
-  }
 
   // Passes over rows of the block, in the order of a step.
   /// Sets the force in active nodes to the body force.
@@ -128,73 +99,37 @@ class Fluid {
   /// One worker, before the velocity is read or the next step is taken: takes what they have sent.
   void end_halo();
 
-  // Observers; between steps, one thread. What is said of the whole lattice is the same on all ranks, and all must ask
-  // for it together.
-  /// Completes the halo so that moments() may be called.
-  void settle();
+  // Observers (AnyFluid).
+  void settle() override;
   /// Moments of row i of the block, x = 0..nx-1, of the state before the next step. The force of that step must have
   /// been spread.
   void moments(int i, std::vector<NodeMoments>& values) const;
-  /// Calls take(b, values) on the first rank with the values of one band of the lattice's nodes after another (gather_bands):
-  /// moments, 1/tau, or the populations of one velocity before the next collision, 0 in the solid. All ranks together.
-  template <class V>
-  using Take = std::function<void(int b, const std::vector<V>& values)>;
-  void gather_moments(const Bands<dimension>& bands, const Take<NodeMoments>& take) const;
-  void gather_relaxation_rates(const Bands<dimension>& bands, const Take<double>& take) const;
-  void gather_populations(int q, const Bands<dimension>& bands, const Take<T>& take) const;
-  /// Of all nodes of the lattice, row after row, on the first rank, which must have room for them; empty on the others.
-  [[nodiscard]] std::vector<NodeMoments> all_moments() const;
-  /// Mean velocity along x of each row of the lattice (flow_rate.hpp), solid nodes counted as fluid at rest.
-  [[nodiscard]] std::vector<double> row_velocities() const;
+  void gather_moments(const Bands<dimension>& bands, const Take<NodeMoments>& take) const override;
+  void gather_relaxation_rates(const Bands<dimension>& bands, const Take<double>& take) const override;
+  void gather_populations(int q, const Bands<dimension>& bands, const Take<double>& take) const override;
+  void copy_populations(int q, std::vector<double>& values) const override;
+  [[nodiscard]] int populations() const override { return velocity_count; }
+  [[nodiscard]] bool single_precision() const override { return std::is_same_v<T, float>; }
+  [[nodiscard]] std::vector<double> row_velocities() const override;
   /// The same without the half step that the membranes' forces have still to act, and so before these are known; after
   /// settle(). All of them together have no share in the mean, but for what walls take of it.
   [[nodiscard]] std::vector<double> row_velocities_without_membranes() const;
-  /// Sum of density deviations over all nodes.
-  [[nodiscard]] double mass() const;
-  /// Mass and largest speed, as moments() would give them, in one sweep.
-  struct MassAndSpeed {
-    double mass, speed;  ///< not a number if any density or velocity is none
-  };
-  [[nodiscard]] MassAndSpeed mass_and_speed() const;
-  /// What the fluid has done to the walls in the last step, by momentum exchange. What membranes beside a wall do to it is
-  /// not in it: Solver::wall_forces(). NaN between the start of a fluid at rest (or taken over) and its first step: walls
-  /// that have just begun to move have exchanged nothing yet.
-  [[nodiscard]] WallForces<dimension> wall_forces() const;
-  /// The same as mean shear stresses on the lower and the upper wall across y, along +x; NaN with solid nodes.
-  struct WallStress {
-    double lower, upper;
-  };
-  [[nodiscard]] WallStress wall_stress() const { return mean_wall_stress(wall_forces()); }
-  [[nodiscard]] WallStress mean_wall_stress(const WallForces<dimension>& forces) const {
-    if (setting_.solid) return {std::nan(""), std::nan("")};
-    const double nodes = static_cast<double>(setting_.domain.nodes()) / setting_.domain.size[1];
-    return {forces.lower[0] / nodes, forces.upper[0] / nodes};
-  }
-  /// What of the fluid's energy there is and what becomes of it, summed over all nodes; state as in moments().
-  struct Energetics {
-    double kinetic;                          ///< u^2/2, density 1
-    double dissipation;                      ///< what viscosity takes in a step, see energetics.cpp
-    std::array<double, dimension> velocity;  ///< sums of u
-    double membrane_power;                   ///< of the forces beside the body force, f . u
-  };
-  [[nodiscard]] Energetics energetics() const;
+  [[nodiscard]] MassAndSpeed mass_and_speed() const override;
+  [[nodiscard]] WallForces<dimension> wall_forces() const override;
+  [[nodiscard]] Energetics energetics() const override;
   /// Populations before the next collision, for tests.
   [[nodiscard]] double population(int q, int x, const Row& row) const;
   [[nodiscard]] double population(int q, int x, int y) const requires(dimension == 2) {
     return population(q, x, Row{y});
   }
-  /// The block's populations of one velocity before the next collision, row after row. After settle().
-  void copy_populations(int q, std::vector<T>& values) const;
-  /// Whether the walls have exchanged momentum with this state of the fluid (WallStress).
-  [[nodiscard]] bool walls_have_acted() const { return walls_have_acted_; }
   /// Goes on from what copy_populations() or gather_populations() gave: `populations(q)` returns the block's for every q.
-  void restore(const std::function<std::vector<T>(int q)>& populations, bool walls_have_acted);
+  void restore(const std::function<std::vector<double>(int q)>& populations, bool walls_have_acted);
 
  private:
   /// Moments, 1/tau and populations of row i of the block, x = 0..nx-1.
   void copy_moments(int i, NodeMoments* to) const;
   void copy_relaxation_rates(int i, double* to) const;
-  void copy_population(int q, int i, T* to) const;
+  void copy_population(int q, int i, double* to) const;
   /// Velocities of row i, x in [0, nx), and where the block wraps around in [-1, nx].
   void velocities(int i, const std::array<double*, dimension>& u) const;
   /// Nodes of the block along x.
@@ -238,14 +173,11 @@ class Fluid {
   void with_arrays(Parity parity, Function function);
   void send_halo(Parity parity, bool early);
 
-  FluidSetting<dimension> setting_;
-  Ranks<dimension> ranks_;
+  using Any::setting_, Any::ranks_, Any::walls_have_acted_, Any::last_walls_;
   CollisionOperator collision_;
   void (*collide_)(const void* self, const Block* block);  ///< of the collision model
   Lattice<T, Set> lattice_;
   Parity parity_ = Parity::even;
-  bool walls_have_acted_ = false;
-  WallVelocity last_walls_;
   std::array<double, dimension> frame_ = {};
   NodeMask mask_;
   std::unique_ptr<SolidLinks<T, Set>> links_;  ///< null without solid nodes

@@ -8,18 +8,23 @@
 
 #include <array>
 #include <cstddef>
+#include <rouleau/d2q9.hpp>
+#include <rouleau/d3q19.hpp>
 
 #include "core/domain/domain.hpp"
 #include "storage.hpp"
-#include "velocity_set.hpp"
 
 namespace rouleau::core {
+
+// The velocity sets are the SDK's, where models find them, too.
+using rouleau::D2Q9;
+using rouleau::D3Q19;
 
 /// Which half of the in-place pair comes next.
 enum class Parity { even, odd };
 constexpr Parity next(Parity parity) { return parity == Parity::even ? Parity::odd : Parity::even; }
 
-/// `Set`: the velocities (velocity_set.hpp). Rows lie along x; a row is named by its coordinates along the other axes.
+/// `Set`: the velocities (D2Q9, D3Q19). Rows lie along x; a row is named by its coordinates along the other axes.
 template <class T, class Set>
 class Lattice {
  public:

@@ -5,7 +5,7 @@
 #include <rouleau/collision.hpp>
 
 #include "core/domain/exact_sum.hpp"
-#include "velocity_set.hpp"
+#include "lattice.hpp"
 
 namespace rouleau::core {
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "any_cell_tasks.hpp"
 #include "cell_exchange.hpp"
 #include "core/contact/interactions.hpp"
 #include "core/contact/wall_contacts.hpp"
@@ -23,7 +24,7 @@ namespace rouleau::core {
 
 /// What a solver does with its cells: outlines, their forces, and what couples them to the fluid.
 template <class T>
-class OutlineTasks {
+class OutlineTasks final : public AnyCellTasks<2> {
  public:
   using Cells = Membranes;
 
@@ -40,33 +41,25 @@ class OutlineTasks {
     coupling_.spread(rows, membranes_, slip_correction_ ? slip_correction_->forces() : membranes_.forces(),
                      fluid_.force());
   }
-  /// Of what is now spread, the share that acts on walls and not on the fluid; of all ranks together.
-  [[nodiscard]] WallForces<2> wall_share() const {
+  [[nodiscard]] WallForces<2> wall_share() const override {
     return coupling_.wall_share(membranes_, slip_correction_ ? slip_correction_->forces() : membranes_.forces(),
                                 ranks_);
   }
   /// The frame of the fluid's unsteady term gets the cells' velocity, as far as the walls allow, if the setup wants that.
   void follow(const std::array<double, 3>& velocity);
-  /// One worker, between steps, before ranks speak of something else than the next step does, which other workers may have
-  /// begun: takes the messages of the last one.
-  void end_messages() {
+  void end_messages() override {
     if (exchange_) exchange_->receive_positions(membranes_, viscosity_field_.watch());
   }
-  /// One worker on all ranks, between steps or where the state may be observed.
-  [[nodiscard]] Surroundings<2> surroundings() {
+  [[nodiscard]] Surroundings<2> surroundings() override {
     end_messages();
     return exchange_ ? Surroundings<2>(membranes_, *exchange_) : Surroundings<2>(membranes_);
   }
-  /// Which cells are whose; null without other ranks.
-  [[nodiscard]] const GhostCells<2>* ghosts() const { return exchange_ ? &exchange_->ghosts() : nullptr; }
-  /// One worker, between steps, on all ranks: the boxes of all membranes, with which others can find their part in them.
-  [[nodiscard]] std::vector<BoundingBox<2>> boxes_of_all() {
+  [[nodiscard]] const GhostCells<2>* ghosts() const override { return exchange_ ? &exchange_->ghosts() : nullptr; }
+  [[nodiscard]] std::vector<BoundingBox<2>> boxes_of_all() override {
     end_messages();
     return exchange_->boxes_of_all(membranes_);
   }
-  /// Leaves the membranes to a solver with another part in them, or of another setup, and what viscosities were made from. It
-  /// is not to take another step.
-  DisplacementWatch::Memory pass_on(const GhostCells<2>& next) {
+  DisplacementWatch::Memory pass_on(const GhostCells<2>& next) override {
     exchange_->pass_on(membranes_, viscosity_field_.watch(), next);
     return std::move(viscosity_field_.watch().memory());
   }
@@ -78,26 +71,24 @@ class OutlineTasks {
     forget_unknown();
   }
 
-  /// First node of this rank's that has left the domain; -1: none.
-  [[nodiscard]] int escaped_node() const { return coupling_.escaped(membranes_); }
-  [[nodiscard]] bool escaped() const { return exchange_ ? exchange_->escaped() : coupling_.any_escaped(membranes_); }
-  [[nodiscard]] MembraneForces& forces() { return membrane_forces_; }
-  /// What it takes to stretch all membranes by 0.1 %, and to bend them by as much.
-  [[nodiscard]] double slight_energy() const;
-  /// Nodes move otherwise than the lattice's fluid at their places does.
-  [[nodiscard]] bool corrects_motion() const { return slip_correction_ || setup_.area_correction; }
-  [[nodiscard]] const ViscosityField<T>& viscosity_field() const { return viscosity_field_; }
-  /// Null without such interactions.
-  [[nodiscard]] const WallContacts<2>* wall_contacts() const { return wall_contacts_.get(); }
-  /// Where the state may be observed: Interactions::force_across_images.
-  [[nodiscard]] double force_across_images(int cell) const {
+  [[nodiscard]] int escaped_node() const override { return coupling_.escaped(membranes_); }
+  [[nodiscard]] bool escaped() const override {
+    return exchange_ ? exchange_->escaped() : coupling_.any_escaped(membranes_);
+  }
+  [[nodiscard]] MembraneEnergy membrane_energy() override { return membrane_forces_.energies(membranes_, ranks_); }
+  [[nodiscard]] std::vector<double> tensions(int cell) override { return membrane_forces_.tensions(membranes_, cell); }
+  /// And to bend them by as much.
+  [[nodiscard]] double slight_energy() const override;
+  [[nodiscard]] bool corrects_motion() const override { return slip_correction_ || setup_.area_correction; }
+  [[nodiscard]] const DisplacementWatch::Memory& viscosity_memory() const override { return viscosity_field_.memory(); }
+  [[nodiscard]] std::array<double, 2> force_from_walls() const override {
+    return {wall_contacts_ ? wall_contacts_->net_force(membranes_, ranks_) : 0, 0};
+  }
+  [[nodiscard]] double force_across_images(int cell) const override {
     return interactions_ ? interactions_->force_across_images(cell) : 0;
   }
-  /// Calls function(forces) for the kinds of interactions that there are: between and within cells, and with walls.
-  template <class Function>
-  void for_each_interaction(Function function) const {
-    if (interactions_) function(*interactions_);
-    if (wall_contacts_) function(*wall_contacts_);
+  [[nodiscard]] std::vector<InteractionEnergy> interaction_energies() const override {
+    return energies_of(membranes_, ranks_, interactions_, wall_contacts_);
   }
 
  private:

@@ -91,52 +91,61 @@ class PassClock {
   Clock::time_point last_ = Clock::now();
 };
 
-/// What each worker does with the passes [first, last), in their order. The clock, if any, is the first worker's.
-inline void run_passes(const std::vector<Pass>& passes, std::size_t first, std::size_t last, const RowBands& bands,
-                       Worker worker, Barrier& barrier, PassClock* clock) {
-  unsigned announced = 0;
-  const auto lap = [&](std::size_t pass) {
-    if (clock != nullptr && worker.first()) clock->lap(pass);
-  };
-  const auto over_rows = [&](std::size_t pass) { return static_cast<bool>(passes[pass].run_rows); };
-  for (std::size_t i = first; i < last;) {
-    std::size_t end = i + 1;
-    if (over_rows(i)) {
-      while (end < last && over_rows(end) && passes[end - 1].meeting == Meeting::none) ++end;
-      const auto take = [&](Range rows) {
-        for (std::size_t k = i; k < end; ++k) {
-          passes[k].run_rows(rows);
-          lap(k);
+/// A step as several workers take it. Before pass [observable], after a barrier, the state may be observed; who does not want
+/// to runs the passes from [rows] on without a stop.
+struct StepPasses {
+  std::vector<Pass> passes;
+  std::size_t rows = 0, observable = 0;
+  std::function<RowBands()> bands;  ///< how this step cuts rows
+  std::vector<std::string> names;   ///< each once, as one process has them; other ranks change the order of the passes
+
+  /// What each worker does with the passes [first, last), in their order. The clock, if any, is the first worker's.
+  void run(std::size_t first, std::size_t last, Worker worker, Barrier& barrier, PassClock* clock = nullptr) const {
+    const RowBands row_bands = bands();
+    unsigned announced = 0;
+    const auto lap = [&](std::size_t pass) {
+      if (clock != nullptr && worker.first()) clock->lap(pass);
+    };
+    const auto over_rows = [&](std::size_t pass) { return static_cast<bool>(passes[pass].run_rows); };
+    for (std::size_t i = first; i < last;) {
+      std::size_t end = i + 1;
+      if (over_rows(i)) {
+        while (end < last && over_rows(end) && passes[end - 1].meeting == Meeting::none) ++end;
+        const auto take = [&](Range some) {
+          for (std::size_t k = i; k < end; ++k) {
+            passes[k].run_rows(some);
+            lap(k);
+          }
+        };
+        if (const auto& after_ends = passes[end - 1].after_ends; after_ends && row_bands.below + row_bands.above > 0) {
+          row_bands.for_ends(worker, take);
+          const unsigned ends = barrier.arrive();
+          if (worker.first()) barrier.wait(ends), after_ends();
+          row_bands.for_middle(worker, take);
+          barrier.wait(ends);
+        } else {
+          row_bands.for_each(worker, take);
         }
-      };
-      if (const auto& after_ends = passes[end - 1].after_ends; after_ends && bands.below + bands.above > 0) {
-        bands.for_ends(worker, take);
-        const unsigned ends = barrier.arrive();
-        if (worker.first()) barrier.wait(ends), after_ends();
-        bands.for_middle(worker, take);
-        barrier.wait(ends);
       } else {
-        bands.for_each(worker, take);
+        passes[i].run(worker);
       }
-    } else {
-      passes[i].run(worker);
+      switch (passes[end - 1].meeting) {
+        case Meeting::all:
+          barrier.arrive_and_wait();
+          break;
+        case Meeting::announce:
+          announced = barrier.arrive();
+          break;
+        case Meeting::await:
+          barrier.wait(announced);
+          break;
+        case Meeting::none:
+          break;
+      }
+      lap(end - 1);
+      i = end;
     }
-    switch (passes[end - 1].meeting) {
-      case Meeting::all:
-        barrier.arrive_and_wait();
-        break;
-      case Meeting::announce:
-        announced = barrier.arrive();
-        break;
-      case Meeting::await:
-        barrier.wait(announced);
-        break;
-      case Meeting::none:
-        break;
-    }
-    lap(end - 1);
-    i = end;
   }
-}
+};
 
 }  // namespace rouleau::core

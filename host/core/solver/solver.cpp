@@ -113,7 +113,7 @@ void set_section_flow(Fluid<T, D3Q19>& fluid, const BasicSolverSetup<3>& setup) 
 template <class T, class Set>
 Solver<T, Set>::Solver(Setup setup, Cells& cells, const Ranks<dimension>& ranks,
                        std::optional<GhostCells<dimension>> ghosts)
-    : setup_(std::move(setup)), cells_(cells), fluid_(fluid_setting(setup_, cells), setup_.collision, ranks) {
+    : Any(std::move(setup), cells), fluid_(fluid_setting(setup_, cells), setup_.collision, ranks) {
   if (!cells.cells.empty()) {
     if (ranks.several()) {
       if (!ghosts) ghosts.emplace(ranks, boxes_of<dimension>(cells), ghost_reach(setup_));
@@ -125,29 +125,31 @@ Solver<T, Set>::Solver(Setup setup, Cells& cells, const Ranks<dimension>& ranks,
     if (!setup_.domain.walled(1)) throw std::invalid_argument("a mean velocity is kept between walls");
     flow_control_.emplace(setup_.mean_velocity, setup_.body_force_x, channel_viscosity(setup_), setup_.domain.size[1]);
   }
-  const Schedule schedule = make_schedule(features());
+  make_passes();
+}
+
+template <class T, class Set>
+void Solver<T, Set>::make_passes() {
+  const bool ranks = fluid_.ranks().several();
+  StepFeatures features{.viscosity_contrast = fluid_.setting().viscosity_contrast,
+                        .moving_frame = setup_.follow_cells,
+                        .changing_drive = setup_.oscillation.any() || flow_control_.has_value(),
+                        .ranks = ranks};
+  if (cell_tasks_) cell_tasks_->describe(features);
+  const Schedule schedule = make_schedule(features);
   for (const Step& step : schedule.steps) {
-    Pass& pass = passes_.emplace_back(Pass{.name = step.name, .run = {}, .meeting = step.meeting});
+    Pass& pass = passes_.passes.emplace_back(Pass{.name = step.name, .run = {}, .meeting = step.meeting});
     if (over_rows(step.task)) {
       pass.run_rows = [this, task = step.task](Range rows) { run_rows(task, rows); };
-      if (step.task == Task::collide_and_stream && ranks.several())
-        pass.after_ends = [this] { fluid_.begin_halo_of_ends(); };
+      if (step.task == Task::collide_and_stream && ranks) pass.after_ends = [this] { fluid_.begin_halo_of_ends(); };
     } else {
       pass.run = [this, task = step.task](Worker worker) { run(task, worker); };
     }
   }
-  rows_pass_ = schedule.rows;
-  observable_pass_ = schedule.observable;
-}
-
-template <class T, class Set>
-StepFeatures Solver<T, Set>::features() const {
-  StepFeatures features{.viscosity_contrast = fluid_.setting().viscosity_contrast,
-                        .moving_frame = setup_.follow_cells,
-                        .changing_drive = setup_.oscillation.any() || flow_control_.has_value(),
-                        .ranks = fluid_.ranks().several()};
-  if (cell_tasks_) cell_tasks_->describe(features);
-  return features;
+  passes_.rows = schedule.rows;
+  passes_.observable = schedule.observable;
+  passes_.bands = [this] { return bands(); };
+  passes_.names = pass_names(features);
 }
 
 template <class T, class Set>
@@ -156,7 +158,7 @@ void Solver<T, Set>::run(Task task, Worker worker) {
     case Task::set_drive:
       if (!worker.first()) return;
       oscillate(steps_);
-      if (flow_control_ && flow_control_->due(steps_)) end_messages(), keep_mean_velocity();
+      if (flow_control_ && flow_control_->due(steps_)) this->end_messages(), keep_mean_velocity();
       return;
     case Task::end_step:
       if (worker.first()) fluid_.end_step(), ++steps_;
@@ -196,7 +198,8 @@ RowBands Solver<T, Set>::bands() const {
 }
 
 template <class T, class Set>
-void Solver<T, Set>::start(Solver* former) {
+void Solver<T, Set>::start(Any* of_any_precision) {
+  auto* const former = static_cast<Solver*>(of_any_precision);
   steps_ = 0;
   double faster = 0;  // what the membranes' last displacement is worth in the new time step
   if (setup_.developed && is_enclosed(setup_)) {
@@ -237,7 +240,7 @@ void Solver<T, Set>::start(Solver* former) {
 }
 
 template <class T, class Set>
-void Solver<T, Set>::start(SolverState<T> state) {
+void Solver<T, Set>::start(SolverState state) {
   steps_ = state.steps;
   if (steps_ > 0) oscillate(steps_ - 1);
   if (flow_control_ && state.flow_control) {
@@ -271,37 +274,59 @@ void Solver<T, Set>::keep_mean_velocity() {
   fluid_.set_drive(setup_.walls, flow_control_->follow(rate / section));
 }
 
-template <class T, class Set>
-typename Fluid<T, Set>::WallStress Solver<T, Set>::wall_stress() const {
-  const WallForces<dimension> forces = wall_forces();
-  if (setup_.tube_radius == 0) return fluid_.mean_wall_stress(forces);
+template <int D>
+WallForces<D> AnySolver<D>::wall_forces() const {
+  WallForces<D> forces = fluid().wall_forces();
+  if (cell_tasks() != nullptr) forces += cell_tasks()->wall_share();
+  return forces;
+}
+
+template <int D>
+typename AnyFluid<D>::WallStress AnySolver<D>::wall_stress() const {
+  const WallForces<D> forces = wall_forces();
+  if (setup_.tube_radius == 0) return fluid().mean_wall_stress(forces);
   const double mean = forces.all(0) / (2 * std::numbers::pi * setup_.tube_radius * setup_.domain.size[0]);
   return {mean, mean};
 }
 
-template <class T, class Set>
-void Solver<T, Set>::step(long count) {
-  for (; count > 0; --count) run_alone(0, passes_.size());
+template <int D>
+void AnySolver<D>::step(long count) {
+  for (; count > 0; --count) run_alone(0, passes_.passes.size());
   end_messages();
 }
 
-template <class T, class Set>
-void Solver<T, Set>::compute_forces() {
-  run_alone(0, observable_pass_);
+template <int D>
+void AnySolver<D>::compute_forces() {
+  run_alone(0, passes_.observable);
 }
 
-template <class T, class Set>
-void Solver<T, Set>::advance() {
-  run_alone(observable_pass_, passes_.size());
+template <int D>
+void AnySolver<D>::advance() {
+  run_alone(passes_.observable, passes_.passes.size());
   end_messages();
 }
 
-template <class T, class Set>
-void Solver<T, Set>::run_alone(std::size_t first, std::size_t last) {
+template <int D>
+void AnySolver<D>::run_alone(std::size_t first, std::size_t last) {
   Barrier nobody(1);
-  run_passes(passes_, first, last, bands(), Worker{}, nobody, nullptr);
+  passes_.run(first, last, Worker{}, nobody);
 }
 
+template <int D>
+std::unique_ptr<AnySolver<D>> make_solver(bool single_precision, BasicSolverSetup<D> setup,
+                                          typename AnySolver<D>::Cells& cells, const Ranks<D>& ranks,
+                                          std::optional<GhostCells<D>> ghosts) {
+  using Set = std::conditional_t<D == 2, D2Q9, D3Q19>;
+  if (single_precision) return std::make_unique<Solver<float, Set>>(std::move(setup), cells, ranks, std::move(ghosts));
+  return std::make_unique<Solver<double, Set>>(std::move(setup), cells, ranks, std::move(ghosts));
+}
+
+template class AnySolver<2>;
+template class AnySolver<3>;
+template std::unique_ptr<AnySolver<2>> make_solver(bool, SolverSetup, Membranes&, const Ranks<2>&,
+                                                   std::optional<GhostCells<2>>);
+template std::unique_ptr<AnySolver<3>> make_solver(bool, BasicSolverSetup<3>, Surfaces&, const Ranks<3>&,
+                                                   std::optional<GhostCells<3>>);
 template class Solver<float>;
 template class Solver<double>;
 template class Solver<float, D3Q19>;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "any_cell_tasks.hpp"
 #include "cell_exchange.hpp"
 #include "core/contact/interactions.hpp"
 #include "core/contact/wall_contacts.hpp"
@@ -24,7 +25,7 @@ namespace rouleau::core {
 
 /// What a solver does with its cells: closed surfaces, their forces, and what couples them to the fluid.
 template <class T>
-class SurfaceTasks {
+class SurfaceTasks final : public AnyCellTasks<3> {
  public:
   using Cells = Surfaces;
 
@@ -47,33 +48,25 @@ class SurfaceTasks {
   void spread(Range rows) {
     coupling_.spread(rows, surfaces_, slip_ ? slip_->forces() : surfaces_.forces(), fluid_.force());
   }
-  /// Of what is now spread, the share that acts on walls and not on the fluid; of all ranks together.
-  [[nodiscard]] WallForces<3> wall_share() const {
+  [[nodiscard]] WallForces<3> wall_share() const override {
     return coupling_.wall_share(surfaces_, slip_ ? slip_->forces() : surfaces_.forces(), fluid_.setting().solid.get(),
                                 ranks_);
   }
   /// The fluid's unsteady term has no frame in three dimensions.
   void follow(const std::array<double, 3>&) {}
-  /// One worker, between steps, before ranks speak of something else than the next step does, which other workers may have
-  /// begun: takes the messages of the last one.
-  void end_messages() {
+  void end_messages() override {
     if (exchange_) exchange_->receive_positions(surfaces_, viscosity_field_.watch());
   }
-  /// One worker on all ranks, between steps or where the state may be observed.
-  [[nodiscard]] Surroundings<3> surroundings() {
+  [[nodiscard]] Surroundings<3> surroundings() override {
     end_messages();
     return exchange_ ? Surroundings<3>(surfaces_, *exchange_) : Surroundings<3>(surfaces_);
   }
-  /// Which cells are whose; null without other ranks.
-  [[nodiscard]] const GhostCells<3>* ghosts() const { return exchange_ ? &exchange_->ghosts() : nullptr; }
-  /// One worker, between steps, on all ranks: the boxes of all surfaces, with which others can find their part in them.
-  [[nodiscard]] std::vector<BoundingBox<3>> boxes_of_all() {
+  [[nodiscard]] const GhostCells<3>* ghosts() const override { return exchange_ ? &exchange_->ghosts() : nullptr; }
+  [[nodiscard]] std::vector<BoundingBox<3>> boxes_of_all() override {
     end_messages();
     return exchange_->boxes_of_all(surfaces_);
   }
-  /// Leaves the surfaces to a solver with another part in them, or of another setup, and what viscosities were made from. It
-  /// is not to take another step.
-  DisplacementWatch::Memory pass_on(const GhostCells<3>& next) {
+  DisplacementWatch::Memory pass_on(const GhostCells<3>& next) override {
     exchange_->pass_on(surfaces_, viscosity_field_.watch(), next);
     return std::move(viscosity_field_.watch().memory());
   }
@@ -85,27 +78,26 @@ class SurfaceTasks {
     forget_unknown();
   }
 
-  /// First node of this rank's that has left the domain; -1: none.
-  [[nodiscard]] int escaped_node() const { return coupling_.escaped(surfaces_); }
-  [[nodiscard]] bool escaped() const { return exchange_ ? exchange_->escaped() : coupling_.any_escaped(surfaces_); }
-  [[nodiscard]] SurfaceForces& forces() { return forces_; }
-  /// What it takes to stretch all membranes by 0.1 % along x, the volume law left aside.
-  [[nodiscard]] double slight_energy() const { return slight_energy_; }
-  /// Whether nodes do not move exactly as the lattice's fluid at their places does.
-  [[nodiscard]] bool corrects_motion() const { return slip_ || keeps_volumes_; }
-  /// Null without such interactions.
-  [[nodiscard]] const WallContacts<3>* wall_contacts() const { return wall_contacts_.get(); }
-  /// Where the state may be observed: Interactions::force_across_images.
-  [[nodiscard]] double force_across_images(int cell) const {
+  [[nodiscard]] int escaped_node() const override { return coupling_.escaped(surfaces_); }
+  [[nodiscard]] bool escaped() const override {
+    return exchange_ ? exchange_->escaped() : coupling_.any_escaped(surfaces_);
+  }
+  [[nodiscard]] MembraneEnergy membrane_energy() override { return forces_.energies(surfaces_, ranks_); }
+  [[nodiscard]] std::vector<double> tensions(int cell) override { return forces_.tensions(surfaces_, cell); }
+  /// Along x, the volume law left aside.
+  [[nodiscard]] double slight_energy() const override { return slight_energy_; }
+  [[nodiscard]] bool corrects_motion() const override { return slip_ || keeps_volumes_; }
+  [[nodiscard]] const DisplacementWatch::Memory& viscosity_memory() const override { return viscosity_field_.memory(); }
+  [[nodiscard]] std::array<double, 2> force_from_walls() const override {
+    if (!wall_contacts_) return {};
+    return {wall_contacts_->net_force(surfaces_, ranks_), wall_contacts_->net_force(surfaces_, ranks_, 2)};
+  }
+  [[nodiscard]] double force_across_images(int cell) const override {
     return interactions_ ? interactions_->force_across_images(cell) : 0;
   }
-  /// Calls function(forces) for the kinds of interactions that there are: between and within cells, and with walls.
-  template <class Function>
-  void for_each_interaction(Function function) const {
-    if (interactions_) function(*interactions_);
-    if (wall_contacts_) function(*wall_contacts_);
+  [[nodiscard]] std::vector<InteractionEnergy> interaction_energies() const override {
+    return energies_of(surfaces_, ranks_, interactions_, wall_contacts_);
   }
-  [[nodiscard]] const InteriorField<T>& viscosity_field() const { return viscosity_field_; }
 
  private:
   /// What this rank does not know takes no memory.

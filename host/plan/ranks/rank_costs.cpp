@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/domain/halo.hpp"
-#include "core/fluid/velocity_set.hpp"
+#include "core/fluid/lattice.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/membrane/rounding.hpp"
 #include "core/solver/ghost_cells.hpp"

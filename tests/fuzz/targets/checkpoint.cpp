@@ -37,10 +37,11 @@ void write_arrays(files::CheckpointWriter& writer, const Json& arrays) {
     for (const Json& value : values) numbers.push_back(value.is_number() ? value.get<double>() : 0);
     const auto nx = static_cast<std::size_t>(the_run().scene.domain.nodes[0]), ny = numbers.size() / nx;
     if (path.starts_with("/populations/") && ny * nx == numbers.size()) {
-      writer.array(path, ny, nx, numbers.data());
+      writer.begin_array(path, ny, nx);
     } else {
-      writer.array(path, numbers);
+      writer.begin_array(path, numbers.size());
     }
+    if (!numbers.empty()) writer.append(numbers);
   }
 }
 
@@ -50,7 +51,7 @@ void resume(const std::filesystem::path& directory) {
   core::Membranes membranes = run.membranes();
   run::RunState state{observe::Observer(run.scene, membranes)};
   const core::Box<2> whole = scene::lattice_domain(run.scene).block;
-  auto restored = run::restore<double>(std::move(resumption.checkpoint), run.plan, whole, state, membranes);
+  auto restored = run::restore<2>(std::move(resumption.checkpoint), run.plan, whole, state, membranes);
   core::Solver<double> solver(plan::make_solver_setup(run.plan, state.stage), membranes);
   solver.start(std::move(restored.solver));
   run::Summary summary;

@@ -30,15 +30,18 @@ const std::vector<double> awkward{0.0,
                                   std::numeric_limits<double>::max(),
                                   std::numeric_limits<double>::infinity()};
 
+const std::vector<double> floats{1.0f / 3, -1e-45f, 2, 3, 4, 5};
+
 /// A checkpoint that holds `step`; it becomes the folder's last one.
 void write_checkpoint(const std::filesystem::path& folder, long step) {
   CheckpointWriter writer(folder);
   writer.facts({{"step", step}});
   writer.state({{"values", awkward}, {"undefined", std::nan("")}});
-  writer.array("/group/doubles", awkward);
-  const std::vector<float> floats{1.0f / 3, -1e-45f, 2, 3, 4, 5};
-  writer.array("/floats", 2, 3, floats.data());
-  writer.array("/none", {});
+  writer.begin_array("/group/doubles", awkward.size());
+  writer.append(awkward);
+  writer.begin_array("/floats", 2, 3, true);
+  writer.append(floats);
+  writer.begin_array("/none", 0);
   writer.finish();
   writer.take_place();
 }
@@ -67,14 +70,13 @@ TEST_CASE("a checkpoint gives back every number to its last bit, in arrays and i
     CHECK(bits(array[i]) == bits(awkward[i]));
   }
   CHECK(std::isnan(reader.state().at("undefined").get<double>()));
-  std::vector<float> floats(6);
-  reader.block("/floats", {3, 2}, {0, 0}, {3, 2}, floats.data());
-  CHECK(floats == std::vector<float>{1.0f / 3, -1e-45f, 2, 3, 4, 5});
-  floats.resize(2);
-  reader.block("/floats", {3, 2}, {1, 0}, {2, 2}, floats.data());
-  CHECK(floats == std::vector<float>{-1e-45f, 4});
+  std::vector<double> all(6), some(2);
+  reader.block("/floats", {3, 2}, {0, 0}, {3, 2}, all.data());
+  CHECK(all == floats);
+  reader.block("/floats", {3, 2}, {1, 0}, {2, 2}, some.data());
+  CHECK(some == std::vector<double>{-1e-45f, 4});
   CHECK(reader.array("/none").empty());
-  CHECK_THROWS_WITH(reader.block("/floats", {2, 3}, {0, 0}, {1, 1}, floats.data()), Contains("another shape"));
+  CHECK_THROWS_WITH(reader.block("/floats", {2, 3}, {0, 0}, {1, 1}, all.data()), Contains("another shape"));
   std::vector<double> five(5);
   CHECK_THROWS_WITH(reader.array("/floats", 5, five.data()), Contains("/floats holds 6 values instead of 5"));
 }

@@ -40,7 +40,7 @@ struct End {
   std::vector<double> in_order;         ///< x of all nodes, on the first
   std::vector<std::uint64_t> observed;  ///< bits of what is observed in the end, on the first
   std::string failure;                  ///< what is said of the state; empty: it is sound
-  std::vector<T> populations[Set::velocity_count];
+  std::vector<double> populations[Set::velocity_count];
 };
 
 /// Runs the steps with several workers.
@@ -51,9 +51,9 @@ void run(Solver<T, Set>& solver, long steps, int workers) {
   for (int w = 0; w < workers; ++w) {
     threads.emplace_back([&, w] {
       for (long i = 0; i < steps; ++i) {
-        const std::size_t rows = solver.rows_pass(), all = solver.passes().size();
-        run_passes(solver.passes(), 0, rows, solver.bands(), Worker{w, workers}, barrier, nullptr);
-        run_passes(solver.passes(), rows, all, solver.bands(), Worker{w, workers}, barrier, nullptr);
+        const StepPasses& step = solver.passes();
+        step.run(0, step.rows, Worker{w, workers}, barrier);
+        step.run(step.rows, step.passes.size(), Worker{w, workers}, barrier);
       }
       barrier.arrive_and_wait();
     });
@@ -150,8 +150,8 @@ End<T, Set> simulate(const Planned<Set::dimension>& planned, const Domain<Set::d
   observe::Observer observer(planned.scene, planned.cells);
   const scene::StageSetting& setting = planned.plan.stages.front();
   solver.compute_forces();
-  const auto observed = numbers(observer.observe(solver, setting, end.cells, false));
-  if (const auto failure = monitor::check_state(observer, solver, setting, end.cells, planned.plan))
+  const auto observed = numbers(observer.observe(solver, setting, false));
+  if (const auto failure = monitor::check_state(observer, solver, setting, planned.plan))
     end.failure = failure->message;
   if (ranks.first()) end.observed = observed;
   solver.fluid().settle();

@@ -9,6 +9,7 @@
 #include "plugin/catalog.hpp"
 #include "plugin/handles.hpp"
 
+using namespace rouleau;
 using namespace rouleau::plan;
 using namespace rouleau::scene;
 using namespace rouleau::core;

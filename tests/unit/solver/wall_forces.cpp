@@ -36,13 +36,13 @@ struct Bench {
   [[nodiscard]] Momentum momentum() {
     Momentum sum;
     solver->fluid().settle();
-    std::vector<T> values;
+    std::vector<double> values;
     for (int q = 0; q < Set::velocity_count; ++q) {
       solver->fluid().copy_populations(q, values);
       ExactSum all;
-      for (const T value : values) {
-        all.add(static_cast<double>(value));
-        sum.rounding += std::abs(static_cast<double>(value));
+      for (const double value : values) {
+        all.add(value);
+        sum.rounding += std::abs(value);
       }
       for (int k = 0; k < D; ++k) sum.along[k] += Set::velocity[q][k] * all.value();
     }

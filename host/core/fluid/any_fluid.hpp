@@ -1,0 +1,126 @@
+// The fluid of a stage as who observes it sees it, whatever the precision of its populations.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/domain/bands.hpp"
+#include "core/domain/domain.hpp"
+#include "core/domain/ranks.hpp"
+#include "solid_nodes.hpp"
+#include "walls.hpp"
+
+namespace rouleau::core {
+
+/// What a fluid is made of. Lattice units.
+template <int D>
+struct FluidSetting {
+  Domain<D> domain;        ///< periodic along x
+  double relaxation_rate;  ///< 1/tau of the suspending fluid
+  /// Viscosity at each height y of the lattice over that of `relaxation_rate` (layers.hpp); empty: 1 everywhere.
+  std::vector<double> viscosity_of_rows = {};
+  bool inertia = false;  ///< initial states include the quadratic terms of the equilibrium
+  WallVelocity walls = {};
+  std::array<double, D> body_force = {};  ///< force density everywhere
+  bool membranes = false;                 ///< keep force and velocity where nodes are active
+  int stencil_above = 2;  ///< how far above the node below a membrane's own a stencil reaches; one less below it
+  bool viscosity_contrast = false;  ///< keep a relaxation rate where nodes are active
+  /// Walls of any shape, at rest; null: none. In three dimensions only.
+  std::shared_ptr<const SolidNodes<D>> solid = {};
+};
+
+/// Moments of one node before collision.
+template <int D>
+struct Moments {
+  double density;                  ///< deviation from 1
+  std::array<double, D> velocity;  ///< with half the force
+};
+
+/// Of D dimensions. One thread, between steps. What is said of the whole lattice is the same on all ranks, and all must ask
+/// for it together.
+template <int D>
+class AnyFluid {
+ public:
+  using NodeMoments = Moments<D>;
+  /// Called on the first rank with the values of one band of the lattice's nodes after another (gather_bands).
+  template <class V>
+  using Take = std::function<void(int b, const std::vector<V>& values)>;
+  /// Mean shear stresses on the lower and the upper wall across y, along +x; NaN with solid nodes.
+  struct WallStress {
+    double lower, upper;
+  };
+  struct MassAndSpeed {
+    double mass, speed;  ///< not a number if any density or velocity is none
+  };
+  /// What of the fluid's energy there is and what becomes of it, summed over all nodes; state as moments have it.
+  struct Energetics {
+    double kinetic;                  ///< u^2/2, density 1
+    double dissipation;              ///< what viscosity takes in a step, see energetics.cpp
+    std::array<double, D> velocity;  ///< sums of u
+    double membrane_power;           ///< of the forces beside the body force, f . u
+  };
+
+  virtual ~AnyFluid() = default;
+
+  [[nodiscard]] const FluidSetting<D>& setting() const { return setting_; }
+  [[nodiscard]] const Ranks<D>& ranks() const { return ranks_; }
+  /// Speeds of the walls during the last step, and now; setting() has those of the next step.
+  [[nodiscard]] const WallVelocity& last_walls() const { return last_walls_; }
+  [[nodiscard]] WallVelocity walls_now() const {
+    return {(last_walls_.lower + setting_.walls.lower) / 2, (last_walls_.upper + setting_.walls.upper) / 2};
+  }
+  /// Whether the walls have exchanged momentum with this state of the fluid (wall_forces).
+  [[nodiscard]] bool walls_have_acted() const { return walls_have_acted_; }
+
+  /// Completes the halo so that what follows may be called.
+  virtual void settle() = 0;
+  /// Moments before the next step, whose force must have been spread; and 1/tau.
+  virtual void gather_moments(const Bands<D>& bands, const Take<NodeMoments>& take) const = 0;
+  virtual void gather_relaxation_rates(const Bands<D>& bands, const Take<double>& take) const = 0;
+  /// Populations of one velocity before the next collision, exact, 0 in the solid.
+  virtual void gather_populations(int q, const Bands<D>& bands, const Take<double>& take) const = 0;
+  /// The same of the block, row after row.
+  virtual void copy_populations(int q, std::vector<double>& values) const = 0;
+  /// How many velocities there are; whether populations are of single precision.
+  [[nodiscard]] virtual int populations() const = 0;
+  [[nodiscard]] virtual bool single_precision() const = 0;
+  /// Moments of all nodes of the lattice, row after row, on the first rank, which must have room for them; empty on the others.
+  [[nodiscard]] std::vector<NodeMoments> all_moments() const {
+    std::vector<NodeMoments> all;
+    if (ranks_.first()) all.reserve(static_cast<std::size_t>(setting_.domain.nodes()));
+    gather_moments(bands_of_all<D>(setting_.domain.size, sizeof(NodeMoments)),
+                   [&](int, const std::vector<NodeMoments>& band) { all.insert(all.end(), band.begin(), band.end()); });
+    return all;
+  }
+  /// Mean velocity along x of each row of the lattice (flow_rate.hpp), solid nodes counted as fluid at rest.
+  [[nodiscard]] virtual std::vector<double> row_velocities() const = 0;
+  /// Sum of density deviations and largest speed, as moments would give them, in one sweep.
+  [[nodiscard]] virtual MassAndSpeed mass_and_speed() const = 0;
+  [[nodiscard]] double mass() const { return mass_and_speed().mass; }
+  [[nodiscard]] virtual Energetics energetics() const = 0;
+  /// What the fluid has done to the walls in the last step, by momentum exchange. What membranes beside a wall do to it is
+  /// not in it: AnySolver::wall_forces(). NaN between the start of a fluid at rest (or taken over) and its first step: walls
+  /// that have just begun to move have exchanged nothing yet.
+  [[nodiscard]] virtual WallForces<D> wall_forces() const = 0;
+  [[nodiscard]] WallStress wall_stress() const { return mean_wall_stress(wall_forces()); }
+  [[nodiscard]] WallStress mean_wall_stress(const WallForces<D>& forces) const {
+    if (setting_.solid) return {std::nan(""), std::nan("")};
+    const double nodes = static_cast<double>(setting_.domain.nodes()) / setting_.domain.size[1];
+    return {forces.lower[0] / nodes, forces.upper[0] / nodes};
+  }
+
+ protected:
+  AnyFluid(const FluidSetting<D>& setting, const Ranks<D>& ranks)
+      : setting_(setting), ranks_(ranks), last_walls_(setting.walls) {}
+
+  FluidSetting<D> setting_;
+  Ranks<D> ranks_;
+  bool walls_have_acted_ = false;
+  WallVelocity last_walls_;
+};
+
+}  // namespace rouleau::core
