@@ -76,13 +76,9 @@ bool start_matters(const scene::Scene& scene) {
 /// Of second order in the spacing.
 bool is_corrected(const scene::Scene& scene) { return scene.cells.empty() || scene.numerics.slip_correction; }
 
-using scene::LatticeSize, scene::lattice_size;
+using scene::LatticeSize;
 
-std::string in_words(const LatticeSize& size) {
-  std::string words;
-  for (const int nodes : size) words += (words.empty() ? "" : " x ") + std::to_string(nodes);
-  return words + " nodes";
-}
+std::string in_words(const LatticeSize& size) { return scene::by_axes(size) + " nodes"; }
 
 /// What small lattices cost beside their nodes, s: each step; each row, and once more if its nodes do not fill registers. Measured in
 /// two dimensions.
@@ -91,7 +87,7 @@ constexpr int full_registers = 8;
 
 /// Cost of a run on a lattice with `coarser` times fewer nodes along each side, over that of the run.
 double share_of(const scene::Scene& scene, double coarser) {
-  const LatticeSize size = lattice_size(scene.domain);
+  const LatticeSize size = scene.domain.nodes;
   const double nodes = std::accumulate(size.begin(), size.end(), 1.0, std::multiplies<>());
   const int dimension = static_cast<int>(size.size());
   const double membranes = plan::membrane_nodes(scene);
@@ -123,8 +119,8 @@ Json on_lattice(const scene::Scene& scene, const LatticeSize& nodes) {
   changed["domain"]["nodes"] = nodes;
   for (const scene::CellType& type : scene.cell_types) {
     Json& cell = changed["cell_types"][type.name];
-    if (scene.domain.depth && type.triangles > 0) cell["triangles"] = shape::divided_triangles(type.triangles, coarser);
-    if (!scene.domain.depth) cell["segments"] = std::max(8L, std::lround(type.segments / coarser));
+    if (type.triangles > 0) cell["triangles"] = shape::divided_triangles(type.triangles, coarser);
+    if (type.segments > 0) cell["segments"] = std::max(8L, std::lround(type.segments / coarser));
   }
   if (!changed.contains("numerics") || !changed["numerics"].is_object()) changed["numerics"] = Json::object();
   changed["numerics"].erase("auto");  // what it chose stands beside it
@@ -161,7 +157,7 @@ bool go_on(Json& scene) {
 
 /// Numbers of equal parts of the lattice's sides that a coarser one of the same shape may have, the finest first.
 struct CoarserLattices {
-  explicit CoarserLattices(const scene::Scene& scene) : nodes_(lattice_size(scene.domain)), radius_(INFINITY) {
+  explicit CoarserLattices(const scene::Scene& scene) : nodes_(scene.domain.nodes), radius_(INFINITY) {
     for (const int nodes : nodes_) parts_ = std::gcd(parts_, nodes);
     if (!scene.cells.empty()) radius_ = shape::smallest_radius(scene) / scene::lattice_spacing(scene);
     least_ = plan::least_radii(scene, plan::membrane_coupling(scene.numerics));
@@ -311,7 +307,7 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost, dou
     return chosen;
   }
   if (fine == 0) {
-    chosen.why_none = "no coarser lattice has the shape of " + in_words(lattice_size(scene.domain)) + " and 1.4 to " +
+    chosen.why_none = "no coarser lattice has the shape of " + in_words(scene.domain.nodes) + " and 1.4 to " +
                       number(most_refinement) +
                       " times their distance at a small part of the cost; take numbers with a larger common divisor";
     return chosen;

@@ -75,7 +75,7 @@ std::string about(const fs::path& file) {
   try {
     const PlannedScene planned(options);
     const std::size_t cells = planned.plan.scene->cells.size();
-    return std::string(planned.plan.scene->domain.depth ? "three" : "two") + " dimensions, " +
+    return std::string(planned.plan.scene->domain.words().number) + " dimensions, " +
            (cells == 0 ? "no" : std::to_string(cells)) + (cells == 1 ? " cell" : " cells") + ", about " +
            time_in_words(planned.report.estimate.wall_s) + " on one core";
   } catch (const std::exception&) {

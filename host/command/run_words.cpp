@@ -145,17 +145,13 @@ std::string viscosity_in_words(const Json& summary) {
 std::string opening(const plan::Plan& plan, const plan::PlanReport& report, int ranks, int threads, int processors,
                     const std::filesystem::path& folder) {
   const scene::Scene& scene = *plan.scene;
-  std::string size, nodes;
-  for (const double length : scene.domain.size) size += (size.empty() ? "" : " x ") + number(length * 1e6, 3);
-  if (scene.domain.depth) size += " x " + number(scene.domain.depth->size * 1e6, 3);
-  for (const int count : scene.domain.nodes) nodes += (nodes.empty() ? "" : " x ") + std::to_string(count);
-  if (scene.domain.depth) nodes += " x " + std::to_string(scene.domain.depth->nodes);
   std::vector<std::string> stages;
   for (const scene::Stage& stage : scene.stages) stages.push_back(stage.name);
   const plan::Estimate& estimate = report.estimate;
   std::string late;
   for (const plan::LateStart& start : report.late_starts) late += "  fluid from rest: " + plan::in_words(start) + "\n";
-  return (scene.title.empty() ? "untitled scene" : scene.title) + "\n  " + size + " um, " + nodes + " nodes, " +
+  return (scene.title.empty() ? "untitled scene" : scene.title) + "\n  " + scene::by_axes(scene.domain.size, 1e6, 3) +
+         " um, " + scene::by_axes(scene.domain.nodes) + " nodes, " +
          counted(static_cast<double>(scene.cells.size()), "cell") + "; stages: " + listed(stages) + "\n  at most " +
          counted(estimate.steps, "step") + ", about " + time_in_words(estimate.wall_s / (ranks * threads)) + " on " +
          workers(ranks, threads) + " (the machine has " + counted(processors, "processor") + "), " +

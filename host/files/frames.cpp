@@ -28,12 +28,10 @@ FrameWriter::FrameWriter(std::filesystem::path file, const scene::Scene& scene)
 void FrameWriter::write_header(hdf5::File& target) const {
   target.attribute("/", "format", "rouleau frames 1");
   target.attribute("/", "title", title_);
-  std::vector<double> size{domain_.size.x(), domain_.size.y()}, nodes(domain_.nodes.begin(), domain_.nodes.end());
-  if (domain_.depth) size.push_back(domain_.depth->size), nodes.push_back(domain_.depth->nodes);
-  target.attribute("/", "size_m", size);
-  target.attribute("/", "nodes", nodes);
-  target.attribute("/", "periodic_y", domain_.periodic_y ? 1L : 0L);
-  if (domain_.depth) target.attribute("/", "periodic_z", domain_.depth->periodic ? 1L : 0L);
+  target.attribute("/", "size_m", std::vector(domain_.size.begin(), domain_.size.end()));
+  target.attribute("/", "nodes", std::vector<double>(domain_.nodes.begin(), domain_.nodes.end()));
+  for (int axis = 1; axis < domain_.dimension(); ++axis)
+    target.attribute("/", std::string("periodic_") + scene::axis_names[axis], domain_.periodic[axis] ? 1L : 0L);
   if (!storage_.whole()) {
     const FieldGrid grid = field_grid();
     target.attribute("/", "fields_first_m", grid.origin);
@@ -181,7 +179,7 @@ void FrameWriter::write_topology(const observe::MembraneSnapshot& membranes) {
 void FrameWriter::write_fields(const std::string& frame, const observe::FieldSnapshot& snapshot, FrameRecord& record) {
   const std::string group = frame + "/fields";
   open_->make_group(group);
-  const bool layers = domain_.depth.has_value(), f64 = storage_.precision == scene::Precision::f64;
+  const bool layers = domain_.dimension() == 3, f64 = storage_.precision == scene::Precision::f64;
   std::vector<float> single;
   for (const observe::Field& field : snapshot.fields) {
     std::vector<hsize_t> shape{static_cast<hsize_t>(snapshot.ny), static_cast<hsize_t>(snapshot.nx)};
@@ -200,14 +198,12 @@ void FrameWriter::write_fields(const std::string& frame, const observe::FieldSna
 
 FieldGrid FrameWriter::field_grid() const {
   FieldGrid grid;
-  const auto add = [&](int axis, double size, int nodes, int first) {
-    const double spacing = size / nodes;
-    grid.nodes.push_back(storage_.count(axis, nodes));
-    grid.origin.push_back(units::coordinate(first, spacing));
+  for (int axis = 0; axis < domain_.dimension(); ++axis) {
+    const double spacing = domain_.size[axis] / domain_.nodes[axis];
+    grid.nodes.push_back(storage_.count(axis, domain_.nodes[axis]));
+    grid.origin.push_back(units::coordinate(storage_.first[axis], spacing));
     grid.spacing.push_back(storage_.stride * spacing);
-  };
-  for (const int axis : {0, 1}) add(axis, domain_.size[axis], domain_.nodes[axis], storage_.first[axis]);
-  if (domain_.depth) add(2, domain_.depth->size, domain_.depth->nodes, storage_.first[2]);
+  }
   grid.bytes = storage_.precision == scene::Precision::f64 ? 8 : 4;
   return grid;
 }

@@ -94,7 +94,8 @@ std::string attraction_remedy(const plan::Plan& plan, const scene::StageSetting&
   if (!scene.numerics.slip_correction || !scene.numerics.area_correction)
     ways.emplace_back("set numerics.slip_correction and numerics.area_correction to true");
   // In three dimensions the slip correction leaks with other kernels: pairs at rest 2 %, with this one 0.2 to 0.8 %.
-  if (scene.domain.depth && scene.numerics.kernel != "sharp6") ways.emplace_back("set numerics.kernel to \"sharp6\"");
+  if (scene.domain.dimension() == 3 && scene.numerics.kernel != "sharp6")
+    ways.emplace_back("set numerics.kernel to \"sharp6\"");
   const double deepest = deepest_over_shear_modulus * plan::shear_modulus(plan);
   if (depth > deepest) {
     ways.push_back("lower the attraction to a depth of " + number(deepest, 2) + " J/m2");

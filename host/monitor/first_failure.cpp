@@ -1,5 +1,6 @@
 #include "first_failure.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -11,17 +12,18 @@ namespace {
 
 /// What a check says of a failure; mode and time come later. CBOR holds every number to its last bit.
 std::vector<std::uint8_t> packed(const Failure& f) {
-  nlohmann::json text{f.reason, f.place, f.cell, f.value, f.limit, f.message, f.remedy};
-  if (f.place_z) text.push_back(*f.place_z);
-  return nlohmann::json::to_cbor(text);
+  const std::vector<double> place(f.place.begin(), f.place.end());
+  return nlohmann::json::to_cbor({f.reason, place, f.cell, f.value, f.limit, f.message, f.remedy});
 }
 
 Failure unpacked(const std::vector<std::uint8_t>& bytes) {
   const nlohmann::json text = nlohmann::json::from_cbor(bytes);
   Failure f;
-  f.reason = text.at(0), f.place = text.at(1), f.cell = text.at(2), f.value = text.at(3), f.limit = text.at(4);
+  f.reason = text.at(0), f.cell = text.at(2), f.value = text.at(3), f.limit = text.at(4);
   f.message = text.at(5), f.remedy = text.at(6);
-  if (text.size() > 7) f.place_z = text.at(7).get<double>();
+  const std::vector<double> place = text.at(1);
+  f.place = scene::Vector::filled(static_cast<int>(place.size()), 0);
+  std::copy(place.begin(), place.end(), f.place.begin());
   return f;
 }
 

@@ -50,8 +50,7 @@ template FoundNode farthest_node(const core::CellNodes&, const core::Ranks<3>&);
 
 template <int D>
 void locate_failure(Failure& f, const FoundNode& node, double spacing) {
-  f.place = {units::coordinate(node.place[0], spacing), units::coordinate(node.place[1], spacing)};
-  if (D == 3) f.place_z = units::coordinate(node.place[2], spacing);
+  f.place = in_metres(node.place, D, spacing);
   f.cell = node.cell;
 }
 

@@ -19,7 +19,7 @@
 namespace rouleau::monitor {
 namespace {
 
-Failure failure(std::string reason, std::array<double, 2> place, int cell, double value, double limit,
+Failure failure(std::string reason, const scene::Vector& place, int cell, double value, double limit,
                 std::string message, std::string remedy) {
   Failure f;
   f.reason = std::move(reason);
@@ -39,10 +39,9 @@ std::string explicit_remedy(const plan::Plan& plan) {
 }
 
 /// What to do first about a cell that leaks, if its segments or edges (mean length in spacings) are the reason.
-std::string leak_remedy(double length, bool in_space) {
+std::string leak_remedy(double length, const scene::DimensionWords& words) {
   if (!(length > plan::longest_segment)) return "";
-  return std::string("take more ") + (in_space ? "triangles" : "segments") + " (this cell's " +
-         (in_space ? "edges are " : "are ") + number(length, 2) +
+  return std::string("take more ") + words.segments + " (this cell's " + words.edges_are + number(length, 2) +
          " lattice spacings long, and fluid leaks between nodes that lie more than " + number(plan::longest_segment) +
          " apart; about one for each spacing is best), ";
 }
@@ -77,7 +76,7 @@ std::array<double, D> extreme_node(const core::AnyFluid<D>& fluid) {
 
 /// Of a piece of a membrane, segment or edge, that is too short or too long.
 Failure uneven_failure(const std::string& piece, int cell, double stretch, double limit, const scene::Stage& stage) {
-  return failure("uneven_nodes", {}, cell, stretch, stretch < 1 ? 1 / limit : limit,
+  return failure("uneven_nodes", {0, 0}, cell, stretch, stretch < 1 ? 1 / limit : limit,
                  piece + (stretch < 1 ? " of a membrane has become too short against the length it was placed with"
                                       : " of a membrane has become too long against the length it was placed with"),
                  "lower " + stage.density_factor_key +
@@ -109,7 +108,7 @@ std::optional<Failure> check_stretch(const core::Membranes& membranes, const sce
 }
 
 Failure crossing_failure(int cell, int other, bool inside, const plan::Plan& plan, const scene::StageSetting& stage) {
-  return failure("crossing", {}, cell, 0, 0,
+  return failure("crossing", {0, 0}, cell, 0, 0,
                  cell == other ? "the membrane of a cell crosses itself"
                                : "the membranes of cells " + std::to_string(cell) + " and " + std::to_string(other) +
                                      (inside ? " lie one inside the other" : " cross"),
@@ -136,8 +135,7 @@ Drift largest_drift(observe::Observer& observer, const Cells& cells, const core:
 /// What an area or a volume that drifts means, and what to do about it.
 Failure drift_failure(const Drift& drift, const plan::Plan& plan, const scene::StageSetting& setting) {
   const scene::Scene& scene = *plan.scene;
-  const bool in_space = scene.domain.depth.has_value();
-  const std::string measure = in_space ? "volume" : "area";
+  const std::string measure = scene.domain.words().content;
   const double spacing = shape::node_spacing(scene.cell_types[scene.cells[drift.cell].type]);
   const bool flows = scene::mean_shear_rate(*setting.stage, scene) > 0;
   std::string remedy = attraction_remedy(plan, setting);
@@ -154,8 +152,8 @@ Failure drift_failure(const Drift& drift, const plan::Plan& plan, const scene::S
                                    : " than the limit: fluid leaks through its membrane")
                       : "a cell has changed its " + measure +
                             " by more than the limit: fluid leaks through its membrane or is compressed";
-  return failure("area_drift", {}, drift.cell, drift.share, scene.checks.area_drift, said,
-                 leak_remedy(spacing / setting.units.length, in_space) + remedy +
+  return failure("area_drift", {0, 0}, drift.cell, drift.share, scene.checks.area_drift, said,
+                 leak_remedy(spacing / setting.units.length, scene.domain.words()) + remedy +
                      ", or raise checks.area_drift if this error is acceptable");
 }
 
@@ -169,15 +167,11 @@ std::optional<Failure> check_cells(observe::Observer& observer, const scene::Sta
   const scene::Scene& scene = *plan.scene;
   const core::Membranes& membranes = around.cells();
   const core::Ranks<2> ranks = around.ranks();
-  const auto place = [&](const core::Vec<2>& at) {
-    return std::array<double, 2>{units::coordinate(at.x(), setting.units.length),
-                                 units::coordinate(at.y(), setting.units.length)};
-  };
   if (const Drift drift = largest_drift(observer, membranes, ranks); !(drift.share <= scene.checks.area_drift)) {
     std::optional<Failure> found;
     if (membranes.owns(drift.cell)) {
       found = drift_failure(drift, plan, setting);
-      found->place = place(core::centroid(membranes, membranes.cells[drift.cell]));
+      found->place = in_metres(core::centroid(membranes, membranes.cells[drift.cell]), 2, setting.units.length);
     }
     return first_failure(ranks, found, by_cell(found));
   }
@@ -188,7 +182,7 @@ std::optional<Failure> check_cells(observe::Observer& observer, const scene::Sta
   around.show(0);
   if (const auto crossing = core::find_crossing(membranes, observer.domain())) {
     crosses = crossing_failure(crossing->cell, crossing->other, crossing->inside, plan, setting);
-    crosses->place = place(crossing->place);
+    crosses->place = in_metres(crossing->place, 2, setting.units.length);
     order[0] = std::min(crossing->cell, crossing->other);
   }
   return first_failure(ranks, crosses, order);
@@ -199,10 +193,9 @@ std::optional<Failure> check_cells(observe::Observer& observer, const scene::Sta
   const scene::Scene& scene = *plan.scene;
   const core::Surfaces& surfaces = around.cells();
   const core::Ranks<3> ranks = around.ranks();
-  const double length = setting.units.length, limit = scene.checks.stretch;
+  const double limit = scene.checks.stretch;
   const auto at = [&](Failure found, const core::Vec<3>& place) {
-    found.place = {units::coordinate(place.x(), length), units::coordinate(place.y(), length)};
-    found.place_z = units::coordinate(place.z(), length);
+    found.place = in_metres(place, 3, setting.units.length);
     return found;
   };
   const auto middle = [&](int cell) {
@@ -243,24 +236,19 @@ template <int D>
 std::optional<Failure> check_state(observe::Observer& observer, core::AnySolver<D>& solver,
                                    const scene::StageSetting& setting, const plan::Plan& plan) {
   const scene::Scene& scene = *plan.scene;
-  const units::LatticeUnits& units = setting.units;
-  const auto place = [&](double x, double y) {
-    return std::array<double, 2>{units::coordinate(x, units.length), units::coordinate(y, units.length)};
-  };
   const double mach = observer.follow_fluid(solver.fluid());
   if (!(mach <= scene.checks.mach)) {
-    const auto node = extreme_node(solver.fluid());
+    const scene::Vector place = in_metres(extreme_node(solver.fluid()), D, setting.units.length);
     const bool by_cells = std::isfinite(mach) && !solver.cells().cells.empty() &&
                           units::mach_number(setting.fastest_wall()) <= scene.checks.mach;
     Failure found =
         std::isfinite(mach)
-            ? failure("mach", place(node[0], node[1]), -1, mach, scene.checks.mach,
+            ? failure("mach", place, -1, mach, scene.checks.mach,
                       "the flow is too fast for the lattice: Mach number above its limit",
                       "lower " + setting.stage->density_factor_key + (by_cells ? explicit_remedy(plan) : "") +
                           ", or lower the shear rate or the driving force, or raise the resolution")
-            : failure("non_finite", place(node[0], node[1]), -1, std::nan(""), 0,
-                      "the fluid holds a value that is no number", blown_up_remedy(*setting.stage));
-    if constexpr (D == 3) found.place_z = units::coordinate(node[2], units.length);
+            : failure("non_finite", place, -1, std::nan(""), 0, "the fluid holds a value that is no number",
+                      blown_up_remedy(*setting.stage));
     if (by_cells) {
       core::Surroundings<D> around = solver.cell_tasks()->surroundings();
       blame_contact(found, around, plan, setting);

@@ -54,7 +54,7 @@ EnergySnapshot observe_energy(core::AnySolver<D>& solver, const units::LatticeUn
   const core::FluidSetting<D>& setting = solver.fluid().setting();
   // What the lattice has is summed over its depth.
   double depth = 1;
-  if constexpr (D == 3) depth = setting.domain.size[2];
+  for (int axis = 2; axis < D; ++axis) depth *= setting.domain.size[axis];
   const double joule = units.to_si(1, units::dimension::energy_per_depth) / depth,
                watt = units.to_si(1, units::dimension::power_per_depth) / depth;
   EnergySnapshot energy;

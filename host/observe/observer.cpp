@@ -218,7 +218,7 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const scene::StageSetting
   snapshot.aggregate_size_number_mean = snapshot.aggregate_size_weight_mean = std::nan("");
   const core::AnyFluid<D>& fluid = solver.fluid();
   const bool oscillates = setting.oscillation.any();
-  if (!scene_->domain.periodic_y) {
+  if (!scene_->domain.periodic[1]) {
     const auto stress = solver.wall_stress();
     snapshot.wall_stress_lower = units.to_si(stress.lower, units::dimension::pressure);
     snapshot.wall_stress_upper = units.to_si(stress.upper, units::dimension::pressure);
@@ -236,16 +236,18 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const scene::StageSetting
                                                        fluid.setting().body_force[0], setting, scene_->domain.nodes[1]);
     snapshot.flow_rate = units.to_si(rate, units::dimension::velocity) * units.length;
     const scene::Domain& box = scene_->domain;
-    snapshot.mean_velocity = snapshot.flow_rate * box.size.x() * (box.depth ? box.depth->size : 1) / box.content();
+    snapshot.mean_velocity = snapshot.flow_rate;  // times what the flow rate is a mean over
+    for (int axis = 0; axis < box.dimension(); ++axis) snapshot.mean_velocity *= axis == 1 ? 1 : box.size[axis];
+    snapshot.mean_velocity /= box.content();
   }
-  if (setting.stage->pressure_gradient.x() != 0 || setting.stage->mean_velocity ||
+  if (setting.stage->pressure_gradient != scene::Vector() || setting.stage->mean_velocity ||
       setting.oscillation.body_force_x != 0) {
     snapshot.pressure_gradient =
         units.to_si(fluid.setting().body_force[0], units::dimension::force_density) - scene_->fluid.body_force.x();
   }
   if (!cells.cells.empty()) {
     const core::Ranks<D>& ranks = solver.ranks();
-    if (!scene_->domain.periodic_y) {
+    if (!scene_->domain.periodic[1]) {
       const core::Domain<D> domain = scene::lattice_domain<D>(*scene_);
       const CellFreeLayer layer = [&] {
         if constexpr (D == 3) {

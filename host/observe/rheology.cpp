@@ -9,15 +9,14 @@
 namespace rouleau::observe {
 
 bool is_driven_channel(const scene::StageSetting& setting, const scene::Scene& scene) {
-  return setting.largest_body_force_x() != 0 && setting.fastest_wall() == 0 && !scene.domain.periodic_y;
+  return setting.largest_body_force().x() != 0 && setting.fastest_wall() == 0 && !scene.domain.periodic[1];
 }
 
 template <int D>
 double flow_rate(const core::AnyFluid<D>& fluid) {
   const core::Domain<D>& domain = fluid.setting().domain;
-  const double rate =
-      core::flow_rate(fluid.row_velocities(), fluid.walls_now(), domain, fluid.setting().solid != nullptr);
-  if constexpr (D == 3) return rate / domain.size[2];
+  double rate = core::flow_rate(fluid.row_velocities(), fluid.walls_now(), domain, fluid.setting().solid != nullptr);
+  for (int axis = 2; axis < D; ++axis) rate /= domain.size[axis];
   return rate;
 }
 

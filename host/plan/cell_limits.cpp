@@ -34,7 +34,7 @@ LimitedStage::LimitedStage(const Plan& of, const scene::StageSetting& setting)
       scene(*of.scene),
       stage(setting),
       facts(of.facts.stages[setting.index]),
-      in_space(scene.domain.depth),
+      in_space(scene.domain.dimension() == 3),
       most_viscous_tau(relaxation_time_of(scene::viscosity_range(scene.fluid).most, scene)),
       where(" (stage " + stage.stage->name + ")"),
       lower("lower " + stage.stage->density_factor_key) {
@@ -91,7 +91,7 @@ namespace {
 
 double stretching_gain_of(const Plan& plan) {
   const scene::Numerics& n = plan.scene->numerics;
-  const bool in_space = plan.scene->domain.depth.has_value();
+  const bool in_space = plan.scene->domain.dimension() == 3;
   const bool thin = n.tau < least_tau_of_full_gain && (n.slip_correction || in_space);
   const bool sharp_contrast = in_space && plan.viscosity_contrast && membrane_coupling(n) == MembraneCoupling::sharp;
   return thin || n.tau > (sharp_contrast ? most_tau_of_sharp_contrast : most_tau_of_full_gain)
@@ -239,10 +239,10 @@ void add_resolution(const LimitedStage& of, LimitList& limits) {
     shortest = std::min(shortest, segment);
     longest = std::max(longest, segment);
   }
-  const std::string piece = of.in_space ? "edge" : "segment", pieces = of.in_space ? "triangles" : "segments";
-  const std::string best = of.in_space ? "edges of about one spacing" : "about one for each spacing";
+  const scene::DimensionWords& words = of.scene.domain.words();
+  const std::string piece = words.segment, pieces = words.segments, best = words.best_segments;
   limits.above("shortest " + piece + " in lattice spacings", shortest, shortest_segment,
-               "take fewer " + pieces + "; " + best + (of.in_space ? " are best" : " is best"));
+               "take fewer " + pieces + "; " + best + words.are_best);
   limits.below("longest " + piece + " in lattice spacings", longest, longest_segment,
                "take more " + pieces + ", " + best + ": fluid leaks between nodes that lie far apart");
 }

@@ -43,7 +43,7 @@ class Bins {
     }
     binned_.reserve(scene.cells.size());
     for (std::size_t i = 0; i < scene.cells.size(); ++i) {
-      const Eigen::Vector2d& center = scene.cells[i].center;
+      const scene::Vector& center = scene.cells[i].center;
       binned_.push_back({bin(0, center.x()), bin(1, center.y()), static_cast<int>(i)});
     }
     std::sort(binned_.begin(), binned_.end(), [](const auto& a, const auto& b) { return a.order() < b.order(); });
@@ -61,7 +61,7 @@ class Bins {
   }
 
  private:
-  [[nodiscard]] bool is_periodic(int axis) const { return axis == 0 || scene_.domain.periodic_y; }
+  [[nodiscard]] bool is_periodic(int axis) const { return scene_.domain.periodic[axis]; }
   [[nodiscard]] long wrapped(int axis, long bin) const {
     return is_periodic(axis) ? (bin % count_[axis] + count_[axis]) % count_[axis] : bin;
   }
@@ -83,7 +83,7 @@ class Bins {
   }
 
   [[nodiscard]] double distance_between(int a, int b) const {
-    Eigen::Vector2d apart = scene_.cells[a].center - scene_.cells[b].center;
+    scene::Vector apart = scene_.cells[a].center - scene_.cells[b].center;
     for (const int axis : {0, 1}) {
       const double size = scene_.domain.size[axis];
       if (is_periodic(axis)) apart[axis] -= size * std::round(apart[axis] / size);

@@ -58,7 +58,7 @@ MembraneCoupling membrane_coupling(const scene::Numerics& numerics) {
 }
 
 LeastRadii least_radii(const scene::Scene& scene, MembraneCoupling coupling) {
-  if (!scene.domain.depth || coupling != MembraneCoupling::sharp) return {};
+  if (scene.domain.dimension() == 2 || coupling != MembraneCoupling::sharp) return {};
   const bool spheres = std::all_of(scene.cells.begin(), scene.cells.end(), [&](const scene::CellPlacement& cell) {
     return std::holds_alternative<scene::Sphere>(scene.cell_types[cell.type].shape);
   });
@@ -68,8 +68,8 @@ LeastRadii least_radii(const scene::Scene& scene, MembraneCoupling coupling) {
 }
 
 double resolved_radius(const scene::Shape& shape) {
-  if (const auto* ellipse = std::get_if<scene::Ellipse>(&shape)) return ellipse->semi_axes.minCoeff();
-  if (const auto* ellipsoid = std::get_if<scene::Ellipsoid>(&shape)) return ellipsoid->semi_axes.minCoeff();
+  if (const auto* ellipse = std::get_if<scene::Ellipse>(&shape)) return ellipse->semi_axes.least();
+  if (const auto* ellipsoid = std::get_if<scene::Ellipsoid>(&shape)) return ellipsoid->semi_axes.least();
   return shape::shape_radius(shape);
 }
 
@@ -105,16 +105,16 @@ double steady_flow_error(const scene::Domain& domain, double spacing) {
   if (domain.tube_radius) return tube_error * square(spacing / *domain.tube_radius);
   if (!domain.is_duct()) return 0;
   return duct_error *
-         square(spacing / (domain.periodic_y ? domain.depth->size : std::min(domain.size.y(), domain.depth->size)));
+         square(spacing / (domain.periodic[1] ? domain.size.z() : std::min(domain.size.y(), domain.size.z())));
 }
 
 double flow_start_error(const scene::Domain& domain, double spacing, double tau) {
-  const double shape = (tau - 0.5) * spacing / domain.height();
+  const double shape = (tau - 0.5) * spacing / domain.across(1);
   return (domain.is_duct() ? start_up_in_duct : start_up) * shape * shape;
 }
 
 double motion_error(double reynolds, const scene::Scene& scene) {
-  if (scene.domain.depth) return in_space::motion_by_reynolds * reynolds;
+  if (scene.domain.dimension() == 3) return in_space::motion_by_reynolds * reynolds;
   return (begins_along_the_flow(scene) ? in_plane::motion_from_along_the_flow : in_plane::motion_by_reynolds) *
          reynolds;
 }
@@ -139,7 +139,7 @@ double steady_error_in_space(double reynolds, double strain, double viscosity_ra
 double order_of_lattice_error(const scene::Scene& scene) {
   if (scene.cells.empty()) return 2;
   if (!scene.numerics.slip_correction) return 1;
-  if (scene.domain.depth) return 2;
+  if (scene.domain.dimension() == 3) return 2;
   double least = in_plane::thin_cell[0].order;
   for (const scene::CellPlacement& cell : scene.cells) {
     const scene::CellType& type = scene.cell_types[cell.type];
@@ -153,7 +153,7 @@ double growth_of_lattice_error(const scene::Scene& scene, double tau) {
   const bool thin = std::any_of(scene.cells.begin(), scene.cells.end(), [&](const scene::CellPlacement& cell) {
     return is_thin(scene.cell_types[cell.type].shape);
   });
-  return thin && !scene.domain.depth ? thin_growth(tau) : 1;
+  return thin && scene.domain.dimension() == 2 ? thin_growth(tau) : 1;
 }
 
 }  // namespace rouleau::plan

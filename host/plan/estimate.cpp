@@ -57,9 +57,8 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<scen
   const double membrane = membrane_nodes(scene);
   const scene::FieldStorage& storage = scene.output.field_storage;
   estimate.fields_compressed = storage.compression > 0 && estimate.field_outputs > 0;
-  const double nodes = static_cast<double>(storage.count(0, scene.domain.nodes[0])) *
-                       storage.count(1, scene.domain.nodes[1]) *
-                       (scene.domain.depth ? storage.count(2, scene.domain.depth->nodes) : 1);
+  double nodes = 1;
+  for (int axis = 0; axis < scene.domain.dimension(); ++axis) nodes *= storage.count(axis, scene.domain.nodes[axis]);
   double components = 0;
   for (const std::string& quantity : scene.output.quantities) components += quantity == "velocity" ? 3 : 1;
 
@@ -78,7 +77,7 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<scen
     double names = 0;
     for (const scene::CellPlacement& cell : scene.cells)
       names += static_cast<double>(scene.cell_types[cell.type].name.size());
-    const double of_cell = row::cells + (scene.domain.periodic_y ? 0 : row::wall_gap) + row::aggregates;
+    const double of_cell = row::cells + (scene.domain.periodic[1] ? 0 : row::wall_gap) + row::aggregates;
     estimate.tables_bytes += estimate.outputs * (cells * of_cell + names + row::sizes);
   }
   return estimate;
@@ -128,7 +127,7 @@ double membrane_nodes(const scene::Scene& scene) {
 
 MembraneScheme membrane_scheme(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;
-  if (!scene.domain.depth) return {};
+  if (scene.domain.dimension() == 2) return {};
   const double cutoff = plan.facts.stages.front().models->cutoff;
   return {.cutoff = cutoff,
           .near = surfaces_near_a_node(scene, cutoff * scene::lattice_spacing(scene)),

@@ -147,7 +147,7 @@ void add_coupling(const Models& models, std::size_t type, double spacing, const 
                            kernel.stretch_limit * limit_between(stretch_limit, scene, cell.interior_viscosity)});
   facts.bending.narrow({factor * stiffness.bending,
                         kernel.bending_limit * limit_between(bending_limit, scene, cell.interior_viscosity)});
-  if (scene.domain.depth) {
+  if (scene.domain.dimension() == 3) {
     const double eigenvalue = core::largest_eigenvalue(core::kernel_response(kernel.kind, slip.shift),
                                                        stiffness.stretching, stiffness.bending);
     facts.steps_of_mean = std::max(facts.steps_of_mean, core::steps_of_mean(eigenvalue, viscosity));
@@ -231,7 +231,7 @@ std::optional<RecoveryRates> recovery_rates(const Models& models, const Facts& f
   if (!models.has_cells) return std::nullopt;
   RecoveryRates rates{INFINITY, 0};
   const double share =
-      models.scene->domain.depth ? 0.75 : 1;  // a neo-Hookean surface has a stretching stiffness of 4 Es
+      models.scene->domain.dimension() == 3 ? 0.75 : 1;  // a neo-Hookean surface has a stretching stiffness of 4 Es
   for (const MembraneFacts& membrane : facts.stages.front().models->membranes) {
     const double rate = share * membrane.recovery_rate;
     rates = {std::min(rates.least, rate), std::max(rates.most, rate)};

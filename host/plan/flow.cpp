@@ -86,55 +86,56 @@ double capsule_left(const FlowStart& start, double relaxation, double strain) {
 
 CellTravel cell_travel(const scene::Scene& scene, const scene::StageSetting& stage) {
   if (scene.fluid.inertia || scene.cells.empty() || !scene::has_walls(scene.domain)) return {};
-  const bool across_z = scene.domain.periodic_y;
-  const double spacing = stage.units.length, height = scene::wall_distance(scene.domain) / spacing;
+  const scene::Domain& domain = scene.domain;
+  const int across = domain.periodic[1] ? 2 : 1;
+  const double spacing = stage.units.length, height = scene::wall_distance(domain) / spacing;
   const double viscosity = core::viscosity_of(stage.tau);
   double cell_radius = 0;
   for (const scene::CellPlacement& cell : scene.cells) {
     cell_radius = std::max(cell_radius, shape::shape_radius(scene.cell_types[cell.type].shape) / spacing);
   }
   CellTravel travel;
-  const auto add = [&](double shear_rate, const Eigen::Vector3d& force, const core::WallVelocity& walls) {
-    const Eigen::Vector3d drive = scene::unheld(force, scene.domain);
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  const auto add = [&](double shear_rate, const scene::Vector& force, const core::WallVelocity& walls) {
+    const scene::Vector drive = scene::unheld(force, domain);
+    scene::Vector mean;
     double farthest = 0;
-    std::vector<Eigen::Vector3d> velocities;
+    std::vector<scene::Vector> velocities;
     for (const scene::CellPlacement& cell : scene.cells) {
-      const double place = (across_z ? cell.z : cell.center.y()) / spacing;
-      Eigen::Vector3d& velocity = velocities.emplace_back();
-      if (scene.domain.tube_radius) {
-        const double radius = *scene.domain.tube_radius / spacing;
-        const double off =
-            std::hypot(cell.center.y() - scene.domain.size.y() / 2, cell.z - scene.domain.depth->size / 2) / spacing;
-        velocity = drive * (std::max(0.0, radius * radius - off * off) / (4 * viscosity));
+      const double place = cell.center[across] / spacing;
+      scene::Vector& velocity = velocities.emplace_back();
+      if (domain.tube_radius) {
+        const double radius = *domain.tube_radius / spacing;
+        scene::Vector off = cell.center - 0.5 * domain.size;
+        off.x() = 0;
+        velocity = std::max(0.0, radius * radius - std::pow(off.norm() / spacing, 2)) / (4 * viscosity) * drive;
       } else {
-        velocity = drive * (place * (height - place) / (2 * viscosity));
+        velocity = place * (height - place) / (2 * viscosity) * drive;
         velocity.x() += shear_rate * (place - height / 2) + (walls.lower + walls.upper) / 2;
       }
-      mean += velocity / static_cast<double>(scene.cells.size());
+      mean += 1 / static_cast<double>(scene.cells.size()) * velocity;
     }
-    for (const Eigen::Vector3d& velocity : velocities) farthest = std::max(farthest, (velocity - mean).norm());
+    for (const scene::Vector& velocity : velocities) farthest = std::max(farthest, (velocity - mean).norm());
     travel.mean += mean.norm() * cell_radius / viscosity;
     travel.spread += farthest * cell_radius / viscosity;
   };
-  add(stage.shear_rate, {stage.body_force_x, stage.body_force_y, stage.body_force_z}, stage.walls);
+  add(stage.shear_rate, stage.body_force, stage.walls);
   // At its largest, and without the delay by the fluid's inertia.
   if (stage.oscillation.any())
-    add(stage.oscillating_rate, {stage.oscillation.body_force_x, 0, 0}, stage.oscillation.walls);
+    add(stage.oscillating_rate, {stage.oscillation.body_force_x, 0}, stage.oscillation.walls);
   return travel;
 }
 
 bool follows_cells(const scene::Scene& scene, const scene::StageSetting& stage) {
-  if (scene.fluid.inertia || scene.cells.empty() || scene.domain.depth) return false;
+  if (scene.fluid.inertia || scene.cells.empty() || scene.domain.dimension() == 3) return false;
   // Between no walls a driven fluid goes faster and faster, and cells with it.
-  return scene.domain.periodic_y ? stage.is_driven() : cell_travel(scene, stage).mean > follows_from;
+  return scene.domain.periodic[1] ? stage.is_driven() : cell_travel(scene, stage).mean > follows_from;
 }
 
 double fastest_driven_speed(const scene::StageSetting& stage, const scene::Scene& scene) {
   const double height = scene::wall_distance(scene.domain) / stage.units.length;
   const double viscosity = core::viscosity_of(scene.numerics.tau), drive = stage.largest_drive(scene.domain);
   if (scene.domain.tube_radius) return drive * height * height / (16 * viscosity);
-  if (scene.fluid.layers.empty() || scene.domain.periodic_y) return drive * height * height / (8 * viscosity);
+  if (scene.fluid.layers.empty() || scene.domain.periodic[1]) return drive * height * height / (8 * viscosity);
   double fastest = 0;
   const std::vector<double> rows = core::viscosity_of_rows(scene::lattice_layers(scene), scene.domain.nodes[1]);
   for (const core::ProfilePoint& point : core::layered_profile(rows, viscosity, {}, drive))
@@ -143,10 +144,10 @@ double fastest_driven_speed(const scene::StageSetting& stage, const scene::Scene
 }
 
 double compression_by_held_force(const scene::StageSetting& stage, const scene::Scene& scene) {
-  const Eigen::Vector3d force(0, stage.body_force_y, stage.body_force_z);
-  const Eigen::Vector3d held = force - scene::unheld(force, scene.domain);
-  const double height = scene.domain.height(), depth = scene.domain.is_duct() ? scene.domain.depth->size : 0;
-  return compression_by_pressure / 2 * (std::abs(held.y()) * height + std::abs(held.z()) * depth) / stage.units.length;
+  const scene::Vector held = stage.body_force - scene::unheld(stage.body_force, scene.domain);
+  double pressure = 0;
+  for (int axis = 0; axis < held.dimension(); ++axis) pressure += std::abs(held[axis]) * scene.domain.across(axis);
+  return compression_by_pressure / 2 * pressure / stage.units.length;
 }
 
 }  // namespace rouleau::plan

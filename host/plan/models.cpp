@@ -39,9 +39,8 @@ std::string in_words(const Demand& demand) {
 /// What it takes that the fluid is driven; empty: it is not.
 std::string what_drives(const scene::Scene& scene) {
   for (const scene::Stage& stage : scene.stages) {
-    if (scene.fluid.body_force != Eigen::Vector2d::Zero() || scene.fluid.body_force_z != 0)
-      return "fluid.body_force drives the fluid";
-    if (stage.mean_velocity || stage.pressure_gradient.x() != 0 || stage.oscillation.pressure_gradient != 0)
+    if (scene.fluid.body_force != scene::Vector()) return "fluid.body_force drives the fluid";
+    if (stage.mean_velocity || stage.pressure_gradient != scene::Vector() || stage.oscillation.pressure_gradient != 0)
       return "a force drives the fluid in stage " + stage.name;
   }
   return {};
@@ -115,10 +114,10 @@ void require_lattice(const Models& models, const plugin::Catalog& catalog, Fault
     if (manifest.kind == plugin::ModelKind::collision && manifest.works_in(scene.domain.dimension()))
       others.push_back(manifest.id);
   }
-  const bool space = scene.domain.depth.has_value();
+  const scene::DimensionWords& words = scene.domain.words();
   faults.add(Error(Cause::bad_input, scene.place(models.collision.pointer + "/model"),
-                   in_quotes(models.collision.manifest->id) + " does not work on " +
-                       (space ? "D3Q19, the lattice of three dimensions" : "D2Q9, the lattice of two dimensions"),
+                   in_quotes(models.collision.manifest->id) + " does not work on " + words.lattice +
+                       ", the lattice of " + words.number + " dimensions",
                    {"take one that does: " + listed(others)}));
 }
 

@@ -52,9 +52,11 @@ bool can_be_steady(const scene::Scene& scene) {
   if (scene.cells.size() != 1 || !scene.packings.empty()) return false;
   const double off = near_the_middle * shape::smallest_radius(scene);
   const scene::Domain& domain = scene.domain;
-  const bool walls_across_z = domain.depth && !domain.depth->periodic;
-  return (domain.periodic_y || std::abs(scene.cells[0].center.y() - domain.size.y() / 2) <= off) &&
-         (!walls_across_z || std::abs(scene.cells[0].z - domain.depth->size / 2) <= off);
+  const scene::Vector from_middle = scene.cells[0].center - 0.5 * domain.size;
+  for (int axis = 0; axis < domain.dimension(); ++axis) {
+    if (!domain.periodic[axis] && std::abs(from_middle[axis]) > off) return false;
+  }
+  return true;
 }
 
 /// What the error and the cost of a scene depend on, and what it pins.
@@ -169,7 +171,7 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
     const bool fixed = std::holds_alternative<scene::MeshFile>(type.shape) ||
                        written_.at("cell_types").at(type.name).contains("triangles");
     has_round_cells_ =
-        has_round_cells_ || (!scene_.domain.depth && !std::holds_alternative<scene::Biconcave>(type.shape));
+        has_round_cells_ || (scene_.domain.dimension() == 2 && !std::holds_alternative<scene::Biconcave>(type.shape));
     used_types_.push_back({&type, placed[i], resolved_radius(type.shape), fixed ? shape::node_count(type) : 0});
     const double ratio = type.interior_viscosity / scene_.fluid.viscosity;
     if (std::abs(std::log(ratio)) > std::abs(std::log(viscosity_ratio_))) viscosity_ratio_ = ratio;
@@ -197,13 +199,13 @@ Problem::Problem(const scene::Scene& draft, const Json& written, const NumericsB
                     std::max(capillary_.most, flow.rate / bounds_.recovery->least)};
     }
   }
-  const double length = has_cells_ ? radius_ : scene_.domain.height() / 2;
+  const double length = has_cells_ ? radius_ : scene_.domain.across(1) / 2;
   momentum_time_ = scene_.fluid.density * length * length / scene::viscosity_range(scene_.fluid).least;
 }
 
 /// In three dimensions the correction was measured with the sharp kernel.
 MembraneCoupling Problem::chosen_coupling() const {
-  const bool in_space = scene_.domain.depth.has_value();
+  const bool in_space = scene_.domain.dimension() == 3;
   scene::Numerics chosen;
   const std::string kernel = numerics_.value("kernel", in_space ? sharp_kernel : chosen.kernel);
   const bool corrected =
@@ -216,7 +218,7 @@ MembraneCoupling Problem::chosen_coupling() const {
 std::vector<scene::LatticeSize> Problem::lattices() const {
   const Json nodes = written_.at("domain").value("nodes", Json());
   if (!nodes.is_null()) return {nodes.get<scene::LatticeSize>()};
-  const scene::LatticeSize coarsest = *scene::coarsest_lattice(scene::sides(scene_.domain));  // the draft has found one
+  const scene::LatticeSize coarsest = *scene::coarsest_lattice(scene_.domain.size);  // the draft has found one
   // Beyond the finest lattice the plan's limits may be exceeded, and it warns.
   const double of_cells = std::min(std::max(bounds_.least_radius, least_radii(scene_, coupling_).run), finest_radius);
   const double least = has_cells_ ? of_cells : fewest_rows / 2.0;
@@ -237,11 +239,11 @@ std::vector<scene::LatticeSize> Problem::lattices() const {
 /// In three dimensions a few layers with periodic sides stand for a plane flow: what counts is how far walls are apart.
 double Problem::half_width() const {
   const scene::Domain& domain = scene_.domain;
-  const std::vector<double> lengths = scene::sides(domain);
-  const double narrowest = *std::min_element(lengths.begin(), lengths.end());
-  if (!domain.depth || (domain.periodic_y && domain.depth->periodic)) return narrowest / 2;
-  double apart = domain.periodic_y ? INFINITY : domain.height();
-  if (domain.is_duct() && !domain.tube_radius) apart = std::min(apart, domain.depth->size);
+  if (domain.dimension() == 2 || !scene::has_walls(domain)) return domain.size.least() / 2;
+  double apart = INFINITY;
+  for (int axis = 0; axis < domain.dimension(); ++axis) {
+    if (!domain.periodic[axis]) apart = std::min(apart, domain.across(axis));
+  }
   return apart / 2;
 }
 
@@ -249,7 +251,7 @@ double Problem::membrane_nodes(double spacing) const {
   double all = 0;
   for (const UsedType& used : used_types_) {
     double nodes = used.nodes_of_cell;
-    if (!scene_.domain.depth)
+    if (scene_.domain.dimension() == 2)
       nodes = shape::shape_perimeter(used.type->shape) / spacing;
     else if (nodes == 0)
       nodes = shape::surface_nodes(scene::triangles_about(used.type->shape, spacing));
@@ -285,6 +287,8 @@ Problem::Trial Problem::cheapest() const {
 Problem::Trial Problem::tried(const scene::LatticeSize& nodes, double tau) const {
   Trial trial{nodes, tau, 0, {}, {}};
   const double spacing = spacing_of(nodes);
+  scene::Domain domain = scene_.domain;
+  domain.nodes = nodes;
   trial.error.resolution = resolution_error(spacing, most_viscous(tau));
   trial.density_factors = density_factors(goal() - trial.error.resolution, spacing, tau);
   for (std::size_t i = 0; i < flows_.size(); ++i) {
@@ -293,9 +297,8 @@ Problem::Trial Problem::tried(const scene::LatticeSize& nodes, double tau) const
     if (of_stage.total() > trial.error.total()) trial.error = of_stage;
   }
   const bool sharp = coupling_ == MembraneCoupling::sharp;
-  trial.cost = step_cost(scene::fluid_nodes(scene::with_lattice(scene_.domain, nodes)), membrane_nodes(spacing),
-                         scene_.numerics.precision, scene_.domain.dimension(),
-                         {.sharp_kernel = sharp, .slip_correction = sharp}) /
+  trial.cost = step_cost(scene::fluid_nodes(domain), membrane_nodes(spacing), scene_.numerics.precision,
+                         scene_.domain.dimension(), {.sharp_kernel = sharp, .slip_correction = sharp}) /
                time_step_of_factor_one(spacing, tau) * duration(trial.density_factors);
   return trial;
 }
@@ -315,7 +318,7 @@ std::vector<double> Problem::density_factors(double error, double spacing, doubl
       factor = std::min(at_rest, most);
     } else {
       // Walls at rate x height / 2 around their mean in units of the spacing over the time step.
-      const double wall_speed = flow.rate * scene_.domain.height() / 2 + flow.mean_wall_speed;
+      const double wall_speed = flow.rate * scene_.domain.across(1) / 2 + flow.mean_wall_speed;
       const double wall_mach = wall_speed * step / spacing / sound;
       // Without cells what is computed is how the fluid's own inertia lets a flow start.
       const double wanted = has_cells_ ? most_density_factor(flow, error, compression_of(spacing, tau)) : 1;
@@ -363,8 +366,8 @@ ErrorShares Problem::error_of(const Flow& flow, double density_factor, double co
 }
 
 double Problem::steady_error_at(double reynolds) const {
-  if (scene_.domain.depth) return steady_error_in_space(reynolds, strain_, viscosity_ratio_);
-  const double height = scene_.domain.height(), length = scene_.domain.size.x();
+  if (scene_.domain.dimension() == 3) return steady_error_in_space(reynolds, strain_, viscosity_ratio_);
+  const double height = scene_.domain.across(1), length = scene_.domain.size.x();
   double area = 0;
   for (const UsedType& used : used_types_) area += used.cells * std::numbers::pi * used.radius * used.radius;
   return steady_error(
@@ -479,7 +482,7 @@ NumericsChoice Problem::chosen(const Trial& best) const {
   };
   const auto percent = [](double share) { return number(100 * share, 2) + " %"; };
   const double spacing = spacing_of(best.nodes);
-  const bool in_space = scene_.domain.depth.has_value();
+  const bool in_space = scene_.domain.dimension() == 3;
   if (!written_.at("domain").contains("nodes")) {
     choose("/domain/nodes", best.nodes,
            has_cells_ ? "the smallest cell's radius is " + number(radius_ / spacing, 3) +
@@ -507,7 +510,7 @@ NumericsChoice Problem::chosen(const Trial& best) const {
         : in_space ? "left out: in three dimensions it was measured with the kernel sharp6 alone, and without layers"
                    : "left out, for plasma between cells drains with it, and some that attract each other strongly "
                      "then become so thin that they cross themselves");
-    set("area_correction", true, in_space ? "cells keep their volumes" : "cells keep their areas");
+    set("area_correction", true, std::string("cells keep their ") + scene_.domain.words().contents);
   }
   choice.doubt = doubt_about(best);
   return choice;
@@ -548,7 +551,7 @@ std::string Problem::doubt_about(const Trial& best) const {
     return "numerics.auto: the error of cells was measured in a fluid of one viscosity, and fluid.layers has others";
   if (viscosity_ratio_ < 0.99 || viscosity_ratio_ > 1.01 * measured_ratio)
     return unknown("viscosity ratio", viscosity_ratio_, 1, measured_ratio);
-  const bool in_space = scene_.domain.depth.has_value();
+  const bool in_space = scene_.domain.dimension() == 3;
   if ((in_space && coupling_ != MembraneCoupling::sharp) || !bounds_.recovery) return {};
   const auto& [least, most] = capillary_;
   const auto& [least_measured, most_measured] = in_space ? measured_capillary_in_space : measured_capillary;
@@ -571,10 +574,8 @@ void put_draft_numerics(json::Document& document) {
   const scene::SceneFields fields(document);
   const bool in_space = root.at("domain").at("size").size() == 3;
   if (!root.at("domain").contains("nodes")) {
-    const Eigen::Vector2d size = fields.quantities("/domain/size", "m", scene::range::length);
-    std::vector<double> lengths{size.x(), size.y()};
-    if (in_space) lengths.push_back(fields.quantity("/domain/size/2", "m", scene::range::length));
-    const auto lattice = scene::coarsest_lattice(lengths);
+    const auto lattice =
+        scene::coarsest_lattice(fields.quantities("/domain/size", "m", scene::range::length, in_space ? 3 : 2));
     if (!lattice) {
       const std::string most = std::to_string(scene::most_coarse_rows);
       fields.refuse(

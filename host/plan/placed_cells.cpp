@@ -58,7 +58,7 @@ void add_placed(core::Membranes& membranes, const scene::CellPlacement& cell, do
   core::add_cell(membranes, cell.type, cell.center.x() / spacing - 0.5, cell.center.y() / spacing - 0.5, cell.angle);
 }
 void add_placed(core::Surfaces& surfaces, const scene::CellPlacement& cell, double spacing) {
-  const core::Vec<3> center(cell.center.x() / spacing - 0.5, cell.center.y() / spacing - 0.5, cell.z / spacing - 0.5);
+  const core::Vec<3> center = (cell.center.in<3>() / spacing).array() - 0.5;
   core::add_cell(surfaces, cell.type, center, shape::rotation_of(cell));
 }
 
@@ -265,9 +265,8 @@ void require_room(const scene::Scene& scene) {
   for (const scene::CellPlacement& cell : scene.cells) covered += enclosed[cell.type];
   const double there = scene.domain.content();
   if (covered <= there) return;
-  const bool space = scene.domain.depth.has_value();
-  const auto measured = [space](double content) {
-    return number(content * (space ? 1e18 : 1e12)) + (space ? " um3" : " um2");
+  const auto measured = [&words = scene.domain.words()](double content) {
+    return number(content * words.content_in_unit) + " " + words.content_unit;
   };
   throw Error(Cause::bad_input, scene.place("/cells"),
               "the " + std::to_string(scene.cells.size()) + " cells cover " + measured(covered) +
@@ -379,7 +378,7 @@ template core::Membranes make_known_cells<2>(const scene::Scene&, const std::fun
 template core::Surfaces make_known_cells<3>(const scene::Scene&, const std::function<bool(int)>&);
 
 void try_cells(const scene::Scene& scene, std::size_t of_strip) {
-  if (scene.domain.depth) {
+  if (scene.domain.dimension() == 3) {
     make_cells<3>(scene);
   } else if (scene.cells.size() > of_strip) {
     try_in_strips(scene, scene::lattice_spacing(scene), of_strip);

@@ -21,7 +21,7 @@ constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 /// A force on a fluid that is periodic along all axes meets no wall that could balance it.
 bool accelerates_for_ever(const scene::StageSetting& stage, const scene::Scene& scene) {
-  return !scene::has_walls(scene.domain) && scene::driving_force(*stage.stage, scene) != Eigen::Vector3d::Zero();
+  return !scene::has_walls(scene.domain) && scene::driving_force(*stage.stage, scene) != scene::Vector();
 }
 
 /// Share of the domain's area or volume that all cells enclose at rest.
@@ -105,10 +105,10 @@ std::vector<Conversion> conversion_table(const Plan& plan) {
     if (stage.stage->mean_velocity) {
       converted("mean velocity", *stage.stage->mean_velocity, "m/s", units::dimension::velocity);
     }
-    const Eigen::Vector3d force(stage.body_force_x, stage.body_force_y, stage.body_force_z);
-    for (int axis = 0; axis < 3; ++axis) {
+    const scene::Vector& force = stage.body_force;
+    for (int axis = 0; axis < force.dimension(); ++axis) {
       if (force[axis] == 0) continue;
-      const std::string along = axis == 0 ? "" : std::string(" along ") + "xyz"[axis];
+      const std::string along = axis == 0 ? "" : std::string(" along ") + scene::axis_names[axis];
       row("driving force density" + along + (axis == 0 && stage.stage->mean_velocity ? ", without cells" : ""),
           u.to_si(force[axis], units::dimension::force_density), "N/m3", force[axis]);
     }
@@ -126,9 +126,9 @@ std::vector<Conversion> conversion_table(const Plan& plan) {
                   units::dimension::force_density);
       }
     }
-    converted("width of the domain", scene.domain.size.x(), "m", units::dimension::length);
-    converted("height of the domain", scene.domain.size.y(), "m", units::dimension::length);
-    if (scene.domain.depth) converted("depth of the domain", scene.domain.depth->size, "m", units::dimension::length);
+    for (int axis = 0; axis < scene.domain.dimension(); ++axis)
+      converted(std::array{"width of the domain", "height of the domain", "depth of the domain"}[axis],
+                scene.domain.size[axis], "m", units::dimension::length);
     if (scene.domain.tube_radius)
       converted("radius of the tube", *scene.domain.tube_radius, "m", units::dimension::length);
     for (const scene::CellType& type : scene.cell_types) {
@@ -173,7 +173,6 @@ bool looks_for_neighbours(const Plan& plan) { return plan.has_interactions || pl
 std::vector<PlannedPass> planned_passes(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   const bool slip = scene.numerics.slip_correction, area = scene.numerics.area_correction;
-  const bool space = scene.domain.depth.has_value();
   std::vector<std::string> parties;
   if (plan.has_interactions) parties.emplace_back("between cells");
   if (plan.has_wall_interactions) parties.emplace_back("between cells and walls");
@@ -182,9 +181,8 @@ std::vector<PlannedPass> planned_passes(const Plan& plan) {
       {"membrane", std::to_string(scene.cells.size()) + " cells resist deformation" +
                        (plan.semi_implicit ? "; semi-implicit step" : "")},
       {"interaction", "an active potential acts " + listed(parties)},
-      {"corrections", slip    ? (area ? "membranes neither slip nor leak" : "membranes do not slip")
-                      : space ? "cells keep their volumes"
-                              : "cells keep their areas"},
+      {"corrections", slip ? (area ? "membranes neither slip nor leak" : "membranes do not slip")
+                           : std::string("cells keep their ") + scene.domain.words().contents},
       {"indicator", "inside and outside of a cell have different viscosities"},
       {"activity", "marks the nodes near membranes, which alone carry force and velocity"},
       {"spread", "membrane forces act on the fluid"},
@@ -219,13 +217,12 @@ std::vector<Omission> omissions(const Plan& plan) {
   } else {
     if (!plan.viscosity_contrast)
       omit("indicator and relaxation rate field", "interior and suspending fluid have the same viscosity");
-    const bool space = scene.domain.depth.has_value();
     if (!scene.numerics.slip_correction)
       omit("slip correction",
            "numerics.slip_correction is false: membranes slip to first order in the lattice spacing");
     if (!scene.numerics.area_correction)
       omit("area correction",
-           std::string("numerics.area_correction is false: leaks show as ") + (space ? "volume" : "area") + " drift");
+           std::string("numerics.area_correction is false: leaks show as ") + scene.domain.words().content + " drift");
     if (!looks_for_neighbours(plan)) {
       omit("neighbour search", scene.interactions.empty()   ? "the scene has no interaction"
                                : plan.has_wall_interactions ? "no interaction between cells is active"
@@ -281,8 +278,8 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
                                   stage.stage->density_factor_key + "), is " + number(acceleration / factor, 3) +
                                   " m/s";
     warnings.push_back("stage " + stage.stage->name + " drives a fluid that is periodic along " +
-                       (scene.domain.depth ? "x, y and z" : "x and y") + ", so no wall holds it and it gains " +
-                       number(acceleration, 3) + " m/s every second" + (factor != 1 ? simulated : "") +
+                       scene.domain.words().axes + ", so no wall holds it and it gains " + number(acceleration, 3) +
+                       " m/s every second" + (factor != 1 ? simulated : "") +
                        ", for as long as the stage lasts; give domain.y walls, or leave out fluid.body_force and "
                        "pressure_gradient");
   }
@@ -313,7 +310,7 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
         "numerics.slip_correction with attracting cells: what presses cells together leaks plasma into them "
         "(docs/accuracy.md); set numerics.area_correction to true as well");
   }
-  if (scene.domain.depth && scene.cells.size() > 1 && !scene.numerics.slip_correction) {
+  if (scene.domain.dimension() == 3 && scene.cells.size() > 1 && !scene.numerics.slip_correction) {
     warnings.emplace_back(
         "numerics.slip_correction is false: in three dimensions plasma hardly drains from between cells then, so that they "
         "pass each other too far apart, suspensions are too viscous, and cells in contact stay together that should part "
@@ -361,11 +358,12 @@ std::optional<BoxShare> box_share(const scene::Scene& scene) {
   const scene::Domain& domain = scene.domain;
   const bool sheared = std::any_of(scene.stages.begin(), scene.stages.end(),
                                    [](const scene::Stage& stage) { return stage.shear_rate != 0; });
-  if (!domain.depth || domain.is_duct() || !sheared || scene.cells.empty() || scene.cells.size() > 2) return {};
+  if (domain.dimension() == 2 || domain.is_duct() || !sheared || scene.cells.empty() || scene.cells.size() > 2)
+    return {};
   double radius = 0;
   for (const scene::CellPlacement& cell : scene.cells)
     radius = std::max(radius, shape::shape_radius(scene.cell_types[cell.type].shape));
-  const double radii = std::min(domain.size.minCoeff(), domain.depth->size) / radius;
+  const double radii = domain.size.least() / radius;
   return BoxShare{radii, box_share_at_eight * std::pow(8 / std::max(radii, smallest_box), 3), radii < smallest_box};
 }
 

@@ -79,15 +79,14 @@ void write_output(std::ostringstream& out, const scene::Scene& scene, const Outp
   if (scene.output.fields.never() || storage.whole()) return;
   const double spacing = scene::lattice_spacing(scene) * 1e6;
   out << "  fields at";
-  const auto write_axis = [&](const char* name, int first, int count) {
-    out << name << formatted(units::coordinate(first, spacing)) << " um";
+  for (int axis = 0; axis < scene.domain.dimension(); ++axis) {
+    const int first = storage.first[axis], count = storage.count(axis, scene.domain.nodes[axis]);
+    out << (axis == 0 ? " " : ", ") << scene::axis_names[axis] << " = " << formatted(units::coordinate(first, spacing))
+        << " um";
     if (count > 1)
       out << " to " << formatted(units::coordinate(first + (count - 1) * storage.stride, spacing)) << " um (" << count
           << " nodes)";
-  };
-  for (const int axis : {0, 1})
-    write_axis(axis == 0 ? " x = " : ", y = ", storage.first[axis], storage.count(axis, scene.domain.nodes[axis]));
-  if (scene.domain.depth) write_axis(", z = ", storage.first[2], storage.count(2, scene.domain.depth->nodes));
+  }
   out << ", " << formatted(storage.stride * spacing) << " um apart: lattice nodes inside the region"
       << (storage.stride > 1 ? " from its lower left corner" : "") << "\n";
 }

@@ -22,7 +22,7 @@ constexpr int most_tries = 20, most_packings = 3;
 constexpr double to_spare = 1.02;
 
 bool attracts_strongly(const Plan& plan) {
-  if (plan.has_self_interactions || plan.scene->domain.depth) return false;
+  if (plan.has_self_interactions || plan.scene->domain.dimension() == 3) return false;
   const double modulus = stretching_modulus(plan, plan.facts);
   return std::any_of(plan.facts.wells.begin(), plan.facts.wells.end(), [&](const InteractionWell& described) {
     return described.well.attracts() && described.between[1] != scene::wall_name &&
@@ -40,7 +40,7 @@ NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
       const double kept =
           plan.scene->stages[stage].density_factor * std::pow(limit.margin, 1 / limit.power_of_density) / to_spare;
       double& most =
-          plan.scene->domain.depth
+          plan.scene->domain.dimension() == 3
               ? bounds.most_density_factor_at.try_emplace({stage, plan.scene->numerics.tau}, kept).first->second
               : bounds.most_density_factor.try_emplace(stage, kept).first->second;
       most = std::min(most, kept);

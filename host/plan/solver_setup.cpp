@@ -1,5 +1,6 @@
 #include "solver_setup.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "constants.hpp"
@@ -19,9 +20,9 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
       .inertia = scene.fluid.inertia,
       .follow_cells = plan.facts.stages[index].follows_cells,
       .walls = stage.walls,
-      .body_force_x = stage.body_force_x,
-      .body_force_y = stage.body_force_y,
-      .body_force_z = stage.body_force_z,
+      .body_force_x = stage.body_force.x(),
+      .body_force_y = stage.body_force.y(),
+      .body_force_z = stage.body_force.z(),
       .oscillation = stage.oscillation,
       // Without cells the gradient that this flow takes is known.
       .mean_velocity = plan.has_cells && stage.stage->mean_velocity

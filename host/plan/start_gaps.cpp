@@ -78,7 +78,7 @@ StartGaps start_gaps(const scene::Scene& scene) {
     if (scene::has_walls(scene.domain) && !scene.domain.tube_radius) gaps.walls = std::min(gaps.walls, gap);
   }
   if (placed.cells.empty() || placed.cells.size() > most) return gaps;
-  scene.domain.depth ? measure<3>(placed, gaps) : measure<2>(placed, gaps);
+  scene.domain.dimension() == 3 ? measure<3>(placed, gaps) : measure<2>(placed, gaps);
   return gaps;
 }
 

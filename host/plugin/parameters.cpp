@@ -124,12 +124,11 @@ class Resolver {
                                              "\n  write it with the unit that is meant, such as \"" + plain + ' ' +
                                              (parameter.dimension == length ? "um" : parameter.unit) + '"');
     }
-    const double box = scene_.domain.size.maxCoeff();
+    const double box = scene_.domain.size.most();
     if (manifest_.kind == ModelKind::interaction && parameter.dimension == length && value > box) {
       refuse(pointer_of(parameter.name), parameter.name + " is " + json::shown(written) +
                                              in_unit(parameter, written, value) + ", longer than the box, which is " +
-                                             number(scene_.domain.size.x() * 1e6) + " um x " +
-                                             number(scene_.domain.size.y() * 1e6) + " um");
+                                             scene::by_axes(scene_.domain.size, 1e6, 6, " um"));
     }
   }
 

@@ -280,17 +280,14 @@ template <int D>
 std::vector<double> read_block(const files::CheckpointReader& reader, const std::string& name,
                                const core::Box<D>& block, const scene::Domain& domain) {
   const int width = block.size(0), height = block.size(1), of_lattice = domain.nodes[1];
+  const int layers = static_cast<int>(domain.node_count() / domain.nodes[0] / of_lattice);
+  const int first = D > 2 ? block.begin[D - 1] : 0, end = first + static_cast<int>(core::row_count(block)) / height;
   std::vector<double> values(static_cast<std::size_t>(width) * core::row_count(block));
   double* to = values.data();
-  const auto read_rows = [&](int layer, int layers) {
+  for (int layer = first; layer < end; ++layer) {
     reader.block(name, {domain.nodes[0], of_lattice * layers}, {block.begin[0], of_lattice * layer + block.begin[1]},
                  {block.end[0], of_lattice * layer + block.end[1]}, to);
     to += static_cast<std::ptrdiff_t>(width) * height;
-  };
-  if constexpr (D == 2) {
-    read_rows(0, 1);
-  } else {
-    for (int layer = block.begin[2]; layer < block.end[2]; ++layer) read_rows(layer, domain.depth->nodes);
   }
   return values;
 }

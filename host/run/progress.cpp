@@ -59,7 +59,7 @@ std::vector<Part> parts(const ProgressState& state, double rate, double remainin
                         {formatted("strain %5.2f", state.strain), 7},
                         {formatted("%5.0f steps/s", rate), 3},
                         {formatted("Mach %7.2g", state.mach_max), 1},
-                        {formatted("%s drift %7.1e", state.in_space ? "volume" : "area", state.area_drift), 2}};
+                        {formatted("%s drift %7.1e", state.drifting, state.area_drift), 2}};
   if (state.rouleaux >= 0)
     all.push_back({formatted(state.rouleaux == 1 ? "%2d rouleau " : "%2d rouleaux", state.rouleaux), 4});
   return all;

@@ -16,7 +16,7 @@ struct ProgressState {
   double mach_max, area_drift;
   int rouleaux;           ///< of two cells or more; below 0: no cells attract each other, and nothing is said of them
   double steps_left = 0;  ///< at most; a stage that ends early takes none of what it had left
-  bool in_space = false;  ///< three dimensions, where the drift is that of a volume
+  const char* drifting = "area";  ///< or "volume"
 };
 
 /// What the rest takes at the speed of the steps so far; not a number before the first.

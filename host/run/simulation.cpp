@@ -280,7 +280,7 @@ class Simulation final : StepHooks {
       const units::LatticeUnits& units = setting().units;
       state_.energy.follow(snapshot, setting().is_driven(),
                            units.to_si(solver().slight_energy(), units::dimension::energy_per_depth) /
-                               (D == 3 ? scene().domain.depth->nodes : 1));
+                               (scene().domain.node_count() / scene().domain.nodes[0] / scene().domain.nodes[1]));
     }
     if (fails(monitor::check_energy(state_.energy, engine_.cells(), ranks(), plan_, setting()))) return false;
     if (ranks().first()) {
@@ -314,7 +314,7 @@ class Simulation final : StepHooks {
             state_.observer.area_drift_max(),
             summary_.plan.attracting.empty() ? -1 : state_.history.rouleaux(),
             left,
-            scene().domain.depth.has_value()};
+            scene().domain.words().content};
   }
 
   /// Adds to the summary what is known behind the last step.
@@ -360,7 +360,8 @@ Summary simulate(const plan::Plan& plan, const plan::PlanReport& report, const R
       const auto* given = std::get_if<core::Ranks<D>>(&ranks);
       return Simulation<D>(plan, report, options, directory, given != nullptr ? *given : core::Ranks<D>{}, owner).run();
     };
-    return plan.scene->domain.depth ? in(std::integral_constant<int, 3>{}) : in(std::integral_constant<int, 2>{});
+    return plan.scene->domain.dimension() == 3 ? in(std::integral_constant<int, 3>{})
+                                               : in(std::integral_constant<int, 2>{});
   } catch (...) {
     std::visit(
         [](const auto& of_lattice) {

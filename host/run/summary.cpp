@@ -7,13 +7,16 @@ namespace {
 using Json = nlohmann::json;
 
 Json to_json(const monitor::Failure& failure) {
-  Json place = failure.place;
-  if (failure.place_z) place.push_back(*failure.place_z);
-  return {{"reason", failure.reason},    {"step", failure.step},
-          {"time_s", failure.time},      {"strain", failure.strain},
-          {"place_m", std::move(place)}, {"cell", failure.cell < 0 ? Json(nullptr) : Json(failure.cell)},
-          {"value", failure.value},      {"limit", failure.limit},
-          {"message", failure.message},  {"remedy", failure.remedy}};
+  return {{"reason", failure.reason},
+          {"step", failure.step},
+          {"time_s", failure.time},
+          {"strain", failure.strain},
+          {"place_m", std::vector(failure.place.begin(), failure.place.end())},
+          {"cell", failure.cell < 0 ? Json(nullptr) : Json(failure.cell)},
+          {"value", failure.value},
+          {"limit", failure.limit},
+          {"message", failure.message},
+          {"remedy", failure.remedy}};
 }
 
 Json to_json(const observe::AggregateEvent& event) {

@@ -56,20 +56,19 @@ std::optional<QuantityColumn> quantity(const std::string& name, const char* want
 CellColumns::CellColumns(const std::vector<std::string>& names, const units::Units& units, const RefuseColumn& refuse) {
   type = find("type", names, refuse);
   step = find("step", names, refuse);
-  for (int k = 0; k < 3; ++k) axis[k] = find(std::string("axis_") + "xyz"[k], names, refuse);
-  x = quantity("x", "m", "um", names, units, refuse);
-  y = quantity("y", "m", "um", names, units, refuse);
-  z = quantity("z", "m", "um", names, units, refuse);
+  for (int k = 0; k < 3; ++k) axis[k] = find(std::string("axis_") + axis_names[k], names, refuse);
+  for (int k = 0; k < 3; ++k) place[k] = quantity({axis_names[k]}, "m", "um", names, units, refuse);
   angle = quantity("angle", "rad", "deg", names, units, refuse);
-  for (const auto* needed : {&x, &y}) {
-    if (needed->has_value()) continue;
-    const std::string name = needed == &x ? "x" : "y";
+  for (const int k : {0, 1}) {
+    if (place[k]) continue;
+    const std::string name(1, axis_names[k]);
     refuse(std::nullopt, "there is no column " + name + " with its unit\nname one, such as \"" + name + "_um\" or \"" +
                              name + "_m\"; it has: " + listed(names));
   }
   for (int k = 0; k < 3; ++k) {
     if (axis[k] || (!axis[0] && !axis[1] && !axis[2])) continue;
-    refuse(std::nullopt, std::string("an axis has three columns, and there is no \"axis_") + "xyz"[k] + "\"; add it");
+    refuse(std::nullopt,
+           std::string("an axis has three columns, and there is no \"axis_") + axis_names[k] + "\"; add it");
   }
 }
 
@@ -130,14 +129,14 @@ void CellRows::add(std::optional<int> type, int line, const Value& value, const 
   };
   CellPlacement& cell = cells.emplace_back();
   cell.type = type.value_or(only_type_.value_or(0));
-  cell.center = {si(*columns.x, range::place), si(*columns.y, range::place)};
+  cell.center = Vector::filled(columns.place[2] ? 3 : 2, 0);
+  for (int k = 0; k < cell.center.dimension(); ++k) cell.center[k] = si(*columns.place[k], range::place);
   cell.angle = columns.angle ? si(*columns.angle, range::angle) : 0;
   cell.pointer = pointer_;
   cell.line = line;
-  cell.z = columns.z ? si(*columns.z, range::place) : std::nan("");
   if (!columns.axis[0]) return;
   Eigen::Vector3d axis;
-  for (int k = 0; k < 3; ++k) axis[k] = value(*columns.axis[k], std::string("axis_") + "xyz"[k]);
+  for (int k = 0; k < 3; ++k) axis[k] = value(*columns.axis[k], std::string("axis_") + axis_names[k]);
   if (!(axis.norm() > 1e-9 && axis.norm() < 1e9))
     refuse(columns.axis[0], "this axis has no direction; give three numbers that are not all 0");
   cell.axis = axis.normalized();

@@ -26,7 +26,8 @@ using RefuseColumn = std::function<void(std::optional<std::size_t> column, const
 /// The columns of a table that say something about cells. Capital letters of a name mean the same; those of a unit do not.
 struct CellColumns {
   std::optional<std::size_t> type, step;
-  std::optional<QuantityColumn> x, y, z, angle;
+  std::array<std::optional<QuantityColumn>, 3> place;  ///< along x, y and z
+  std::optional<QuantityColumn> angle;
   std::array<std::optional<std::size_t>, 3> axis;  ///< numbers
 
   CellColumns() = default;

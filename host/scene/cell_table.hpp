@@ -11,8 +11,8 @@
 
 namespace rouleau::scene {
 
-/// Reads a CSV file whose header names the columns `type`, `x_UNIT`, `y_UNIT`, in three dimensions `z_UNIT` (a place
-/// along z is NaN without it), and, where cells are turned, `angle_UNIT` and `axis_x`, `axis_y`, `axis_z` (numbers), in any
+/// Reads a CSV file whose header names the columns `type`, `x_UNIT`, `y_UNIT`, in three dimensions `z_UNIT` (without
+/// it places have two numbers), and, where cells are turned, `angle_UNIT` and `axis_x`, `axis_y`, `axis_z` (numbers), in any
 /// order and beside others that are not looked at; without `type` all cells are of that which is given, or of the only cell
 /// type. Where there is a column `step`, as in cells.csv of a run, the rows of the last step are taken: where that run has
 /// come to. Columns are separated by commas, semicolons or tabs, as the header or a line `sep=;` before it shows; between

@@ -31,7 +31,7 @@ double channel_viscosity(const Scene& scene) {
 
 double duct_share(const Domain& domain) {
   if (!domain.is_duct()) return 1;
-  const double pi = std::numbers::pi, height = domain.size.y(), width = domain.depth->size;
+  const double pi = std::numbers::pi, height = domain.size.y(), width = domain.size.z();
   if (domain.tube_radius)  // Hagen and Poiseuille: pi G R^4 / (8 mu)
     return 1.5 * pi * std::pow(*domain.tube_radius, 4) / (width * std::pow(height, 3));
   // White, Viscous Fluid Flow, section 3-3; terms fall as 1/n^5.
@@ -48,40 +48,35 @@ ViscosityRange viscosity_range(const FluidProperties& fluid) {
   return range;
 }
 
-Eigen::Vector3d driving_force(const Stage& stage, const Scene& scene) {
-  const Eigen::Vector2d& body = scene.fluid.body_force;
-  double along_x = body.x() + stage.pressure_gradient.x();
+Vector driving_force(const Stage& stage, const Scene& scene) {
+  Vector force = Vector::filled(scene.domain.dimension(), 0) + scene.fluid.body_force + stage.pressure_gradient;
   if (stage.mean_velocity && scene.domain.tube_radius) {
     const double radius = *scene.domain.tube_radius;
-    along_x = 8 * scene.fluid.viscosity * *stage.mean_velocity / (radius * radius);
+    force.x() = 8 * scene.fluid.viscosity * *stage.mean_velocity / (radius * radius);
   } else if (stage.mean_velocity) {
     const double height = scene.domain.size.y();
-    along_x = 12 * channel_viscosity(scene) * *stage.mean_velocity / (height * height * duct_share(scene.domain));
+    force.x() = 12 * channel_viscosity(scene) * *stage.mean_velocity / (height * height * duct_share(scene.domain));
   }
-  return {along_x, body.y() + stage.pressure_gradient.y(), scene.fluid.body_force_z};
-}
-
-bool has_walls(const Domain& domain) { return !domain.periodic_y || domain.is_duct(); }
-
-double wall_distance(const Domain& domain) {
-  return domain.periodic_y && domain.is_duct() ? domain.depth->size : domain.height();
-}
-
-Eigen::Vector3d unheld(Eigen::Vector3d force, const Domain& domain) {
-  if (!domain.periodic_y) force.y() = 0;
-  if (domain.is_duct()) force.z() = 0;
   return force;
 }
 
-double driving_part(const Eigen::Vector3d& force, const Domain& domain) {
-  const Eigen::Vector3d drive = unheld(force, domain);
-  return std::hypot(drive.x(), drive.y(), drive.z());
+bool has_walls(const Domain& domain) { return !domain.periodic[1] || domain.is_duct(); }
+
+double wall_distance(const Domain& domain) { return domain.across(domain.periodic[1] && domain.is_duct() ? 2 : 1); }
+
+Vector unheld(Vector force, const Domain& domain) {
+  for (std::size_t axis = 0; axis < domain.periodic.size(); ++axis) {
+    if (!domain.periodic[axis]) force[axis] = 0;
+  }
+  return force;
 }
+
+double driving_part(const Vector& force, const Domain& domain) { return unheld(force, domain).norm(); }
 
 namespace {
 
 /// Of a steady flow.
-double mean_rate(double shear_rate, const Eigen::Vector3d& force, const Scene& scene) {
+double mean_rate(double shear_rate, const Vector& force, const Scene& scene) {
   if (shear_rate != 0) return std::abs(shear_rate);
   if (!has_walls(scene.domain)) return 0;
   const double height = wall_distance(scene.domain), round = scene.domain.tube_radius ? 2 : 1;
@@ -97,7 +92,7 @@ double steady_rate(const Stage& stage, const Scene& scene) {
 double mean_shear_rate(const Stage& stage, const Scene& scene) {
   const double steady = steady_rate(stage, scene);
   if (!stage.oscillates()) return steady;
-  return steady + mean_rate(stage.oscillation.shear_rate, {stage.oscillation.pressure_gradient, 0, 0}, scene);
+  return steady + mean_rate(stage.oscillation.shear_rate, {stage.oscillation.pressure_gradient, 0}, scene);
 }
 
 double start_up_strain(const Stage& stage, const Scene& scene) {

@@ -8,18 +8,17 @@ namespace rouleau::scene {
 /// Whether the walls move in a stage.
 bool walls_move(const Stage& stage);
 
-/// Force per volume that drives the fluid in a stage, N/m3; for a mean velocity what it would take without cells. In
-/// two dimensions without z.
-Eigen::Vector3d driving_force(const Stage& stage, const Scene& scene);
+/// Force per volume that drives the fluid in a stage, N/m3; for a mean velocity what it would take without cells.
+Vector driving_force(const Stage& stage, const Scene& scene);
 
 /// Whether walls hold the fluid, across y or z.
 bool has_walls(const Domain& domain);
 /// From wall to wall, m: across y, or across z where y is periodic; the diameter of a tube.
 double wall_distance(const Domain& domain);
 /// Of a force what no wall across it takes, so that it drives a flow.
-Eigen::Vector3d unheld(Eigen::Vector3d force, const Domain& domain);
+Vector unheld(Vector force, const Domain& domain);
 /// Its magnitude.
-double driving_part(const Eigen::Vector3d& force, const Domain& domain);
+double driving_part(const Vector& force, const Domain& domain);
 
 /// Viscosity of the suspending fluid as a driven channel feels it, Pa s: without layers as it is; with them that of the
 /// fluid without layers that the same pressure gradient drives through at the same rate.

@@ -22,7 +22,7 @@ class Hdf5Table {
     rows_.find_columns(names_, source_.units, refuse_);
     const CellColumns& columns = rows_.columns;
     values_.resize(names_.size());
-    for (const auto& column : {columns.x, columns.y, columns.z, columns.angle}) {
+    for (const auto& column : {columns.place[0], columns.place[1], columns.place[2], columns.angle}) {
       if (column) read_numbers(column->at);
     }
     for (const auto& column : {columns.step, columns.axis[0], columns.axis[1], columns.axis[2]}) {

@@ -11,12 +11,11 @@ double lattice_spacing(const Scene& scene) { return scene.domain.size.x() / scen
 
 template <int D>
 core::Domain<D> lattice_domain(const Scene& scene) {
-  const Domain& domain = scene.domain;
-  if constexpr (D == 2) {
-    return {{domain.nodes[0], domain.nodes[1]}, {true, domain.periodic_y}};
-  } else {
-    return {{domain.nodes[0], domain.nodes[1], domain.depth->nodes}, {true, domain.periodic_y, domain.depth->periodic}};
-  }
+  std::array<int, D> nodes;
+  std::array<bool, D> periodic;
+  std::copy_n(scene.domain.nodes.begin(), D, nodes.begin());
+  std::copy_n(scene.domain.periodic.begin(), D, periodic.begin());
+  return {nodes, periodic};
 }
 template core::Domain<2> lattice_domain(const Scene&);
 template core::Domain<3> lattice_domain(const Scene&);
@@ -36,30 +35,9 @@ std::vector<core::Layer> lattice_layers(const Scene& scene) {
   return layers;
 }
 
-LatticeSize lattice_size(const Domain& domain) {
-  LatticeSize size{domain.nodes[0], domain.nodes[1]};
-  if (domain.depth) size.push_back(domain.depth->nodes);
-  return size;
-}
+double fluid_nodes(const Domain& domain) { return domain.node_count() * (domain.content() / domain.size.product()); }
 
-std::vector<double> sides(const Domain& domain) {
-  std::vector<double> lengths{domain.size.x(), domain.size.y()};
-  if (domain.depth) lengths.push_back(domain.depth->size);
-  return lengths;
-}
-
-Domain with_lattice(Domain domain, const LatticeSize& nodes) {
-  domain.nodes = {nodes[0], nodes[1]};
-  if (domain.depth) domain.depth->nodes = nodes[2];
-  return domain;
-}
-
-double fluid_nodes(const Domain& domain) {
-  if (!domain.tube_radius) return domain.node_count();
-  return domain.node_count() * domain.content() / (domain.size.prod() * domain.depth->size);
-}
-
-std::optional<LatticeSize> coarsest_lattice(const std::vector<double>& sides) {
+std::optional<LatticeSize> coarsest_lattice(const Vector& sides) {
   constexpr double tolerance = 1e-9;
   for (int rows = 4; rows <= most_coarse_rows; ++rows) {
     LatticeSize found;
@@ -68,7 +46,7 @@ std::optional<LatticeSize> coarsest_lattice(const std::vector<double>& sides) {
       if (nodes > 3.5 && nodes < most_nodes_of_side + 0.5 && std::abs(nodes - std::round(nodes)) < tolerance * nodes)
         found.push_back(static_cast<int>(std::lround(nodes)));
     }
-    if (found.size() == sides.size()) return refined(found, 1);
+    if (static_cast<int>(found.size()) == sides.dimension()) return refined(found, 1);
   }
   return {};
 }

@@ -28,19 +28,13 @@ std::shared_ptr<const core::SolidNodes<3>> solid_nodes(const Scene& scene);
 /// Its layers of other viscosities.
 std::vector<core::Layer> lattice_layers(const Scene& scene);
 
-LatticeSize lattice_size(const Domain& domain);
-/// Lengths of the sides, m: two, or three.
-std::vector<double> sides(const Domain& domain);
-/// The domain with this lattice.
-Domain with_lattice(Domain domain, const LatticeSize& nodes);
-
 /// Nodes whose fluid is computed: those in a tube, or all.
 double fluid_nodes(const Domain& domain);
 
 inline constexpr int most_coarse_rows = 4096;
 /// The coarsest lattice with the same spacing along all sides, at least four nodes each; none where their ratios are not those of
 /// whole numbers, up to most_coarse_rows along y, or where it would have more nodes than can be computed.
-std::optional<LatticeSize> coarsest_lattice(const std::vector<double>& sides);
+std::optional<LatticeSize> coarsest_lattice(const Vector& sides);
 /// A lattice with so many times as many nodes along each side; none where that are more than can be computed.
 std::optional<LatticeSize> refined(LatticeSize nodes, int factor);
 

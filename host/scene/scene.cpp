@@ -25,10 +25,9 @@ std::string in_micrometres(double metres) { return '"' + number(metres * 1e6, 12
 
 /// Says how to make the spacing the same along both directions, by size always and by nodes where a whole number does.
 std::string spacing_remedy(const Domain& domain) {
-  const Eigen::Vector2d spacing(domain.size.x() / domain.nodes[0], domain.size.y() / domain.nodes[1]);
+  const double spacing = domain.size.x() / domain.nodes[0], nodes = domain.size.y() / spacing;
   std::string remedy =
-      "write size [" + in_micrometres(domain.size.x()) + ", " + in_micrometres(spacing.x() * domain.nodes[1]) + ']';
-  const double nodes = domain.size.y() / spacing.x();
+      "write size [" + in_micrometres(domain.size.x()) + ", " + in_micrometres(spacing * domain.nodes[1]) + ']';
   if (std::abs(nodes - std::round(nodes)) < spacing_tolerance * nodes && nodes > 3.5 &&
       nodes < most_nodes_of_side + 0.5) {
     remedy += " or nodes [" + std::to_string(domain.nodes[0]) + ", " + number(std::round(nodes), 12) + ']';
@@ -36,30 +35,25 @@ std::string spacing_remedy(const Domain& domain) {
   return remedy;
 }
 
-/// The third number of size and nodes, and what is at both ends along z.
-void read_depth(const SceneFields& fields, Domain& domain) {
-  const auto has_third = [&](const std::string& key) { return fields.has(key) && fields.count(key) == 3; };
-  const bool size = has_third("/domain/size"), nodes = has_third("/domain/nodes");
-  if (!size && nodes) {
-    fields.refuse("/domain/nodes",
-                  "nodes has three numbers and size two\ngive both three, for three dimensions, or both two");
+/// What is at both ends along an axis.
+void read_ends(const SceneFields& fields, Domain& domain, int axis) {
+  const std::string key = std::string("/domain/") + axis_names[axis];
+  if (!fields.has(key)) return;
+  if (axis >= domain.dimension()) {
+    fields.refuse_key(key, "there is no z in two dimensions\ngive size and nodes three numbers, or leave z out");
   }
-  if (!size) {
-    if (fields.has("/domain/z")) {
-      fields.refuse_key("/domain/z",
-                        "there is no z in two dimensions\ngive size and nodes three numbers, or leave z out");
-    }
-    return;
-  }
-  domain.depth->size = fields.quantity("/domain/size/2", "m", range::length);
-  fields.attempt([&] {
-    if (fields.has("/domain/z")) domain.depth->periodic = fields.value<nlohmann::json>("/domain/z").is_string();
-  });
-  if (fields.has("/domain/nodes") && !nodes) {
-    fields.refuse("/domain/nodes",
-                  "size has three numbers and nodes two\ngive both three, for three dimensions, or both two");
-  }
-  if (nodes) domain.depth->nodes = fields.value<int>("/domain/nodes/2");
+  domain.periodic[axis] = fields.value<nlohmann::json>(key).is_string();
+}
+
+/// As many as there are sides.
+std::vector<int> read_nodes(const SceneFields& fields, const Domain& domain) {
+  fields.require("/domain", "nodes", "or \"numerics\": \"auto\" chooses them");
+  const auto nodes = fields.value<std::vector<int>>("/domain/nodes");
+  const int count = static_cast<int>(nodes.size());
+  if (count == domain.dimension()) return nodes;
+  fields.refuse("/domain/nodes", std::string(count > domain.dimension() ? "nodes has three numbers and size two"
+                                                                        : "size has three numbers and nodes two") +
+                                     "\ngive both three, for three dimensions, or both two");
 }
 
 /// The radius of a tube, which closes y and z; none: planes do, or nothing.
@@ -68,7 +62,7 @@ std::optional<double> read_tube(const SceneFields& fields, const Domain& domain)
     fields.require("/domain", "y", "\"periodic\" or walls, or \"walls\" with a tube");
     return std::nullopt;
   }
-  if (!domain.depth) {
+  if (domain.dimension() < 3) {
     fields.refuse_key("/domain/walls",
                       "a tube has three dimensions, and this domain two\ngive size and nodes three numbers, or leave "
                       "walls out and close y");
@@ -82,7 +76,7 @@ std::optional<double> read_tube(const SceneFields& fields, const Domain& domain)
                                        std::to_string(most_nodes_of_block) + " can be computed");
   const double radius = fields.quantity(key, "m", range::length);
   if (!is_known(domain) || !std::isfinite(radius)) return radius;
-  const double most = std::min(domain.size.y(), domain.depth->size) / 2, spacing = domain.size.y() / domain.nodes[1];
+  const double most = std::min(domain.size.y(), domain.size.z()) / 2, spacing = domain.size.y() / domain.nodes[1];
   if (radius > most * (1 + spacing_tolerance)) {
     fields.refuse(key, "a tube with a radius of " + in_micrometres(radius) +
                            " does not fit into the domain\ngive at most " + in_micrometres(most) +
@@ -96,9 +90,8 @@ std::optional<double> read_tube(const SceneFields& fields, const Domain& domain)
   return radius;
 }
 
-/// What is there in two dimensions only, so far.
-void check_space(const SceneFields& fields, const Scene& scene) {
-  if (!scene.domain.depth) return;
+/// What is there between plane walls only, so far.
+void check_duct(const SceneFields& fields, const Scene& scene) {
   if (scene.domain.tube_radius && !scene.fluid.layers.empty()) {
     fields.attempt([&] {
       fields.refuse("/fluid/layers", "layers lie along plane walls, and this domain is a tube\nleave the layers out");
@@ -120,23 +113,16 @@ void check_space(const SceneFields& fields, const Scene& scene) {
 
 /// It has as many dimensions as its size has numbers, whatever is wrong with them.
 void read_domain(const SceneFields& fields, Domain& domain) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  domain.nodes = {};
-  domain.size.setConstant(unknown);
-  if (fields.has("/domain/size/2")) domain.depth = Depth{unknown, 0};
-  domain.size = fields.quantities("/domain/size", "m", range::length);
+  const int dimension = fields.has("/domain/size/2") ? 3 : 2;
+  domain.nodes.assign(dimension, 0);
+  domain.size = Vector::filled(dimension, std::numeric_limits<double>::quiet_NaN());
+  domain.size = fields.quantities("/domain/size", "m", range::length, dimension);
+  for (const int axis : {1, 2}) fields.attempt([&] { read_ends(fields, domain, axis); });
   fields.attempt([&] {
-    if (fields.has("/domain/y")) domain.periodic_y = fields.value<nlohmann::json>("/domain/y").is_string();
-  });
-  fields.attempt([&] { read_depth(fields, domain); });
-  fields.attempt([&] {
-    fields.require("/domain", "nodes", "or \"numerics\": \"auto\" chooses them");
-    domain.nodes = fields.value<std::array<int, 2>>("/domain/nodes");
+    domain.nodes = read_nodes(fields, domain);
     if (domain.node_count() > static_cast<double>(most_nodes)) {
-      fields.refuse("/domain/nodes", std::to_string(domain.nodes[0]) + " x " + std::to_string(domain.nodes[1]) +
-                                         (domain.depth ? " x " + std::to_string(domain.depth->nodes) : "") +
-                                         " nodes are too many; at most " + std::to_string(most_nodes) +
-                                         " can be computed");
+      fields.refuse("/domain/nodes", by_axes(domain.nodes) + " nodes are too many; at most " +
+                                         std::to_string(most_nodes) + " can be computed");
     }
     const double rows = domain.node_count() / domain.nodes[0];
     if (rows > static_cast<double>(most_rows))
@@ -152,18 +138,18 @@ void read_domain(const SceneFields& fields, Domain& domain) {
                                         number(along_y * 1e6) + " um along y; it must be the same along both\n" +
                                         spacing_remedy(domain));
     }
-    if (!domain.depth) return;
-    const double along_z = domain.depth->size / domain.depth->nodes;
-    if (std::abs(along_x - along_z) > spacing_tolerance * along_x) {
+    for (int axis = 2; axis < domain.dimension(); ++axis) {
+      const double along_z = domain.size[axis] / domain.nodes[axis];
+      if (std::abs(along_x - along_z) <= spacing_tolerance * along_x) continue;
       fields.refuse("/domain/size/2", "the lattice spacing would be " + number(along_x * 1e6) + " um along x but " +
                                           number(along_z * 1e6) +
                                           " um along z; it must be the same along all axes\nwrite " +
-                                          in_micrometres(along_x * domain.depth->nodes) + " here");
+                                          in_micrometres(along_x * domain.nodes[axis]) + " here");
     }
   });
   fields.attempt([&] {
     domain.tube_radius = read_tube(fields, domain);
-    if (domain.tube_radius) domain.depth->periodic = false;
+    if (domain.tube_radius) domain.periodic[2] = false;
   });
 }
 
@@ -202,27 +188,24 @@ std::vector<FluidLayer> read_layers(const SceneFields& fields, double height) {
   return layers;
 }
 
-double read_body_force_z(const SceneFields& fields, int dimension) {
+Vector read_body_force(const SceneFields& fields, int dimension) {
   const std::string pointer = "/fluid/body_force";
   if (static_cast<int>(fields.count(pointer)) != dimension) {
     fields.refuse(pointer, "the force has " + std::to_string(fields.count(pointer)) + " components, and domain.size " +
                                std::to_string(dimension) + "\ngive it as many");
   }
-  return dimension == 3 ? fields.quantity(pointer + "/2", "N/m3", range::force_density) : 0;
+  return fields.quantities(pointer, "N/m3", range::force_density, dimension);
 }
 
 FluidProperties read_fluid(const SceneFields& fields, const Domain& domain) {
-  const double height = domain.size.y();
-  const int dimension = domain.dimension();
   FluidProperties fluid;
   fluid.density = fields.quantity("/fluid/density", "kg/m3", range::density);
   fluid.viscosity = fields.quantity("/fluid/viscosity", "Pa s", range::viscosity);
-  fluid.layers = read_layers(fields, height);
+  fluid.layers = read_layers(fields, domain.size.y());
   fluid.inertia = fields.value_or("/fluid/inertia", false);
-  if (fields.has("/fluid/body_force")) {
-    fluid.body_force = fields.quantities("/fluid/body_force", "N/m3", range::force_density);
-    fields.attempt([&] { fluid.body_force_z = read_body_force_z(fields, dimension); });
-  }
+  fields.attempt([&] {
+    if (fields.has("/fluid/body_force")) fluid.body_force = read_body_force(fields, domain.dimension());
+  });
   fluid.collision = {"trt", nlohmann::json::object(), "/fluid/collision"};
   fields.attempt([&] {
     if (fields.has("/fluid/collision")) fluid.collision = fields.model("/fluid/collision");
@@ -259,12 +242,12 @@ void check_layers(const SceneFields& fields, const Scene& scene) {
 }
 
 std::array<int, 2> read_between(const SceneFields& fields, const std::string& pointer,
-                                const std::vector<CellType>& types, bool periodic_y) {
+                                const std::vector<CellType>& types, const Domain& domain) {
   const auto side = [&](const std::string& which) {
     if (fields.at(pointer + which) == self_name) return Interaction::self;
     if (fields.at(pointer + which) != wall_name)
       return fields.cell_type(pointer + which, types, {wall_name, self_name});
-    if (!periodic_y) return Interaction::wall;
+    if (!domain.periodic[1]) return Interaction::wall;
     fields.refuse(pointer + which,
                   "there is no wall, for domain.y is \"periodic\"\nwrite \"y\": {\"lower\": {\"wall\": {}}, "
                   "\"upper\": {\"wall\": {}}}, or leave this interaction out");
@@ -285,13 +268,13 @@ std::array<int, 2> read_between(const SceneFields& fields, const std::string& po
 }
 
 std::vector<Interaction> read_interactions(const SceneFields& fields, const std::vector<CellType>& types,
-                                           bool periodic_y) {
+                                           const Domain& domain) {
   std::vector<Interaction> interactions;
   const auto count = fields.has("/interactions") ? fields.count("/interactions") : 0;
   for (std::size_t i = 0; i < count; ++i) {
     const auto pointer = json::child_pointer("/interactions", i);
     auto& interaction = interactions.emplace_back();
-    fields.attempt([&] { interaction.between = read_between(fields, pointer + "/between", types, periodic_y); });
+    fields.attempt([&] { interaction.between = read_between(fields, pointer + "/between", types, domain); });
     fields.attempt([&] { interaction.potential = fields.model(pointer); });
   }
   return interactions;
@@ -352,7 +335,7 @@ void check_membrane_nodes(const Scene& scene) {
   std::int64_t nodes = 0;
   for (const auto& cell : scene.cells) {
     const CellType& type = scene.cell_types[cell.type];
-    nodes += scene.domain.depth ? type.triangles / 2 + 2 : type.segments;
+    nodes += type.nodes();
   }
   if (nodes <= most_membrane_nodes) return;
   SceneFields(*scene.document)
@@ -385,17 +368,17 @@ Scene read_scene(std::shared_ptr<const json::Document> document, Faults& faults)
     if (fields.has("/title")) scene.title = fields.line("/title");
   });
   part([&] { read_domain(fields, scene.domain); });
-  if (scene.domain.size.allFinite()) fields.bound_lengths(scene.domain.size);
+  if (scene.domain.size.is_finite()) fields.bound_lengths(scene.domain.size);
   part([&] { scene.fluid = read_fluid(fields, scene.domain); });
   part([&] { scene.numerics = read_numerics(fields); });
   part([&] { scene.cell_types = read_cell_types(fields, scene.fluid.viscosity, scene.domain); });
   part([&] { scene.cells = read_cells(fields, scene.cell_types, scene.domain, scene.packings); });
   part([&] { check_layers(fields, scene); });
-  part([&] { scene.interactions = read_interactions(fields, scene.cell_types, scene.domain.periodic_y); });
+  part([&] { scene.interactions = read_interactions(fields, scene.cell_types, scene.domain); });
   part([&] { scene.stages = read_stages(fields, scene); });
   part([&] { scene.output = read_output(fields, scene.stages); });
   part([&] { scene.output.field_storage = read_field_storage(fields, scene.domain); });
-  part([&] { check_space(fields, scene); });
+  part([&] { check_duct(fields, scene); });
   part([&] { scene.at_rest = read_at_rest(fields); });
   part([&] { scene.equilibrium = read_equilibrium(fields); });
   part([&] { scene.checks = read_checks(fields); });

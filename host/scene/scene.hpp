@@ -14,8 +14,10 @@
 #include <vector>
 
 #include "base/faults.hpp"
+#include "dimension_words.hpp"
 #include "json/document.hpp"
 #include "json/json.hpp"
+#include "vector.hpp"
 
 namespace rouleau::scene {
 
@@ -26,37 +28,31 @@ struct ModelChoice {
   std::string pointer;        ///< JSON pointer of the object that names the model
 };
 
-/// The third dimension of a domain.
-struct Depth {
-  double size;           ///< m
-  int nodes;             ///< along z
-  bool periodic = true;  ///< false: solid walls at both ends
-};
-
 struct Domain {
-  Eigen::Vector2d size;        ///< m
-  std::array<int, 2> nodes;    ///< lattice nodes along x and y; the spacing is the same along all axes
-  bool periodic_y = false;     ///< false: solid walls below and above; x is periodic always
-  std::optional<Depth> depth;  ///< none: two dimensions
+  Vector size{0, 0};                ///< m, along two axes or three
+  std::vector<int> nodes = {0, 0};  ///< of the lattice along each axis; the spacing is the same along all
+  /// By axis; false: solid walls at both ends. x is periodic always, and z where there is none.
+  std::array<bool, 3> periodic{true, false, true};
   /// Of a tube along x through the middle, in place of walls across y and z, m; in three dimensions.
   std::optional<double> tube_radius = {};
 
-  [[nodiscard]] int dimension() const { return depth ? 3 : 2; }
+  [[nodiscard]] int dimension() const { return size.dimension(); }
+  [[nodiscard]] const DimensionWords& words() const { return words_of(dimension()); }
   /// Of the whole lattice.
   [[nodiscard]] double node_count() const {
-    return static_cast<double>(nodes[0]) * nodes[1] * (depth ? depth->nodes : 1);
+    double all = 1;
+    for (const int count : nodes) all *= count;
+    return all;
   }
   /// Of what the walls enclose: m2, or m3 in three dimensions.
   [[nodiscard]] double content() const {
     if (tube_radius) return std::numbers::pi * *tube_radius * *tube_radius * size.x();
-    return size.prod() * (depth ? depth->size : 1);
+    return size.product();
   }
-  /// From corner to corner, m.
-  [[nodiscard]] double diagonal() const { return std::hypot(size.norm(), depth ? depth->size : 0); }
   /// Whether walls close it along z, too.
-  [[nodiscard]] bool is_duct() const { return depth && !depth->periodic; }
-  /// From wall to wall, m.
-  [[nodiscard]] double height() const { return tube_radius ? 2 * *tube_radius : size.y(); }
+  [[nodiscard]] bool is_duct() const { return !periodic[2]; }
+  /// From wall to wall along y or z, m.
+  [[nodiscard]] double across(int axis) const { return tube_radius ? 2 * *tube_radius : size[axis]; }
 };
 
 /// A part of the suspending fluid that has another viscosity, between two heights.
@@ -66,13 +62,12 @@ struct FluidLayer {
 };
 
 struct FluidProperties {
-  double density;                                        ///< kg/m3
-  double viscosity;                                      ///< Pa s, of the suspending fluid
-  std::vector<FluidLayer> layers;                        ///< beside each other, from below
-  bool inertia = false;                                  ///< false: linear (Stokes) equilibrium
-  Eigen::Vector2d body_force = Eigen::Vector2d::Zero();  ///< N/m3, in every stage
-  double body_force_z = 0;                               ///< N/m3, likewise
-  ModelChoice collision;                                 ///< "trt" when the scene names none
+  double density;                  ///< kg/m3
+  double viscosity;                ///< Pa s, of the suspending fluid
+  std::vector<FluidLayer> layers;  ///< beside each other, from below
+  bool inertia = false;            ///< false: linear (Stokes) equilibrium
+  Vector body_force;               ///< N/m3, in every stage
+  ModelChoice collision;           ///< "trt" when the scene names none
 };
 
 enum class Precision { f32, f64 };
@@ -95,14 +90,14 @@ struct Circle {
   double prestretch = 1.0;
 };  ///< radius as placed (m); rest length = length / prestretch
 struct Ellipse {
-  Eigen::Vector2d semi_axes;
+  Vector semi_axes;
 };  ///< m, first along x at angle 0
 struct Sphere {
   double radius;
   double prestretch = 1.0;
 };  ///< in three dimensions, as a circle
 struct Ellipsoid {
-  Eigen::Vector3d semi_axes;
+  Vector semi_axes;
 };  ///< m, along x, y and z at angle 0
 struct MeshFile {
   std::filesystem::path file;
@@ -118,19 +113,20 @@ struct CellType {
   double interior_viscosity;          ///< Pa s
   std::vector<ModelChoice> membrane;  ///< laws that add up
   int triangles = 0;                  ///< of a surface: 20 n^2; 0 in two dimensions, and of a mesh, whose file has them
+
+  /// Of its outline or, but of a mesh, its surface.
+  [[nodiscard]] int nodes() const { return segments > 0 ? segments : triangles / 2 + 2; }
 };
 
 /// One cell to be placed; rows, lists and files are read already.
 struct CellPlacement {
-  int type;                ///< index into Scene::cell_types
-  Eigen::Vector2d center;  ///< m
-  double angle;            ///< rad, counter-clockwise
-  std::string pointer;     ///< entry of /cells that asked for it
-  int line = 0;            ///< of the file of cells that it comes from; 0: of none
-  double z = 0;            ///< m, of the centre, in three dimensions
-  std::optional<Eigen::Vector3d> axis =
-      {};  ///< unit vector that the shape's y axis is turned to; `angle` is then about
-           ///< it, not about z
+  int type;             ///< index into Scene::cell_types
+  Vector center;        ///< m
+  double angle;         ///< rad, counter-clockwise
+  std::string pointer;  ///< entry of /cells that asked for it
+  int line = 0;         ///< of the file of cells that it comes from; 0: of none
+  /// Unit vector that the shape's y axis is turned to; `angle` is then about it, not about z.
+  std::optional<Eigen::Vector3d> axis = {};
 };
 
 /// Cells that were placed at random.
@@ -140,10 +136,9 @@ struct RandomPacking {
   std::optional<double> hematocrit;  ///< asked for, a share of the region; empty: a number of cells was
   double reached;                    ///< share of the region that the cells fill at rest
   std::uint32_t seed;
-  double gap;                       ///< m, kept from other cells, their images and walls
-  Eigen::Vector2d lower, upper;     ///< m, corners of the region that holds the cells
-  std::string pointer;              ///< entry of /cells
-  double lower_z = 0, upper_z = 0;  ///< m, likewise, in three dimensions
+  double gap;           ///< m, kept from other cells, their images and walls
+  Vector lower, upper;  ///< m, corners of the region that holds the cells
+  std::string pointer;  ///< entry of /cells
 };
 
 /// Stand for both walls, and for other parts of the same membrane, where an interaction names what it acts between; no
@@ -176,8 +171,7 @@ struct Stage {
   double shear_rate = 0.0;  ///< 1/s, of either sign: speed of the upper wall less that of the lower, over the height
   double mean_wall_speed = 0.0;  ///< m/s, of both walls together, along x
   WallStart start = WallStart::impulsive;
-  Eigen::Vector2d pressure_gradient =
-      Eigen::Vector2d::Zero();          ///< force per volume that drives the flow, Pa/m, along x
+  Vector pressure_gradient;             ///< force per volume that drives the flow, Pa/m, along x
   std::optional<double> mean_velocity;  ///< m/s, of the fluid in a channel: the pressure gradient is what it takes
   Oscillation oscillation;
   double density_factor;                                   ///< Numerics::density_factor unless the stage has its own

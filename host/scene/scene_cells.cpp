@@ -47,9 +47,7 @@ Shape read_shape(const SceneFields& fields, const std::string& pointer, bool in_
                   fields.value_or(pointer + "/sphere/prestretch", 1.0)};
   }
   if (fields.has(pointer + "/ellipsoid")) {
-    const std::string axes = pointer + "/ellipsoid/semi_axes";
-    const Eigen::Vector2d first = fields.quantities(axes, "m", range::length);
-    return Ellipsoid{{first.x(), first.y(), fields.quantity(axes + "/2", "m", range::length)}};
+    return Ellipsoid{fields.quantities(pointer + "/ellipsoid/semi_axes", "m", range::length, 3)};
   }
   if (fields.has(pointer + "/mesh"))
     return MeshFile{fields.file(pointer + "/mesh/file"),
@@ -60,7 +58,7 @@ Shape read_shape(const SceneFields& fields, const std::string& pointer, bool in_
     return Circle{fields.quantity(pointer + "/circle/radius", "m", range::length),
                   fields.value_or(pointer + "/circle/prestretch", 1.0)};
   }
-  return Ellipse{fields.quantities(pointer + "/ellipse/semi_axes", "m", range::length)};
+  return Ellipse{fields.quantities(pointer + "/ellipse/semi_axes", "m", range::length, 2)};
 }
 
 /// Of the shape's surface, m2; of a mesh 0.
@@ -139,10 +137,8 @@ class Placements {
   }
 
   void place_one(int type, const std::string& pointer) {
-    CellPlacement cell{type, fields_.quantities(pointer + "/at", "m", range::place), angle(pointer), pointer};
-    cell.z = height(pointer + "/at");
-    cell.axis = axis(pointer);
-    cells_.push_back(std::move(cell));
+    const Vector center = fields_.place(pointer + "/at", domain_);
+    cells_.push_back({type, center, angle(pointer), pointer, 0, axis(pointer)});
   }
 
   void read_file(const std::string& pointer) {
@@ -153,12 +149,13 @@ class Placements {
     }
     std::optional<int> type;
     if (fields_.has(pointer + "/type")) type = fields_.cell_type(pointer + "/type", types_);
-    const auto placed = read_cell_table(file, types_, fields_.units(), pointer, type);
+    auto placed = read_cell_table(file, types_, fields_.units(), pointer, type);
     fields_.require_room(cells_.size(), placed.size(), pointer + "/file");
-    if (domain_.depth && !placed.empty() && std::isnan(placed.front().z)) {
+    if (!placed.empty() && placed.front().center.dimension() < domain_.dimension()) {
       fields_.refuse(pointer + "/file",
                      "in three dimensions cells have a place along z\nadd a column z_um to the file");
     }
+    for (CellPlacement& cell : placed) cell.center = cell.center.first(domain_.dimension());
     cells_.insert(cells_.end(), placed.begin(), placed.end());
   }
 
@@ -167,19 +164,16 @@ class Placements {
     const auto count = fields_.value<std::size_t>(pointer + "/count");
     fields_.require_room(cells_.size(), count, pointer + "/count");
     const double spacing = fields_.quantity(pointer + "/spacing", "m", range::length);
-    const auto center = fields_.quantities(pointer + "/center", "m", range::place);
+    const Vector middle = fields_.place(pointer + "/center", domain_);
     const double turn = angle(pointer);
-    const double z = height(pointer + "/center");
-    const std::string along = fields_.value_or(pointer + "/axis", std::string("x"));
-    if (along == "z" && !domain_.depth)
+    const std::string name = fields_.value_or(pointer + "/axis", std::string("x"));
+    const int along = name[0] - axis_names[0];
+    if (along >= domain_.dimension())
       fields_.refuse(pointer + "/axis", "there is no z in two dimensions\ntake \"x\" or \"y\"");
-    const Eigen::Vector3d direction(along == "x" ? 1 : 0, along == "y" ? 1 : 0, along == "z" ? 1 : 0);
-    const double middle = 0.5 * static_cast<double>(count - 1);
     for (std::size_t i = 0; i < count; ++i) {
-      const Eigen::Vector3d way = (static_cast<double>(i) - middle) * spacing * direction;
-      CellPlacement cell{type, center + way.head<2>(), turn, entry};
-      cell.z = z + way.z();
-      cells_.push_back(std::move(cell));
+      Vector center = middle;
+      center[along] += (static_cast<double>(i) - 0.5 * static_cast<double>(count - 1)) * spacing;
+      cells_.push_back({type, center, turn, entry});
     }
   }
 
@@ -189,19 +183,10 @@ class Placements {
     packings_.push_back(std::move(packing));
   }
 
-  /// The third number of a place; 0 in two dimensions.
-  [[nodiscard]] double height(const std::string& pointer) const {
-    const bool third = fields_.count(pointer) == 3, in_space = domain_.depth.has_value();
-    if (third && !in_space && is_known(domain_))
-      fields_.refuse(pointer, "there is no z in two dimensions\ngive two lengths");
-    if (!third && in_space) fields_.refuse(pointer, "in three dimensions a place has three lengths");
-    return third && in_space ? fields_.quantity(pointer + "/2", "m", range::place) : 0;
-  }
-
   /// What a cell's own axis is turned to, if the scene says it.
   [[nodiscard]] std::optional<Eigen::Vector3d> axis(const std::string& pointer) const {
     if (!fields_.has(pointer + "/axis")) return std::nullopt;
-    if (!domain_.depth && is_known(domain_)) {
+    if (domain_.dimension() == 2 && is_known(domain_)) {
       fields_.refuse_key(pointer + "/axis", "in two dimensions cells turn in the plane\ngive \"angle\"");
     }
     const auto written = fields_.value<std::array<double, 3>>(pointer + "/axis");
@@ -250,7 +235,7 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_vi
     // The name stands, whatever is wrong with the rest.
     CellType& type = types.emplace_back();
     type.name = name;
-    const bool in_space = domain.depth.has_value();
+    const bool in_space = domain.dimension() == 3;
     fields.attempt([&] { type.shape = read_shape(fields, pointer + "/shape", in_space); });
     type.segments = 0;
     fields.attempt([&] {

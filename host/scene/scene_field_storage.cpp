@@ -16,10 +16,9 @@ std::string micrometres(double length) { return number(length * 1e6, 6) + " um";
 
 /// The nodes of a region along one axis; node i lies at (i + 1/2) spacings.
 std::array<int, 2> nodes_within(const SceneFields& fields, const Domain& domain, int axis, double from, double to) {
-  const std::string pointer = "/output/fields/region", along = std::string(" along ") + "xyz"[axis];
+  const std::string pointer = "/output/fields/region", along = std::string(" along ") + axis_names[axis];
   const std::string end = json::child_pointer(pointer + "/to", static_cast<std::size_t>(axis));
-  const int nodes = axis == 2 ? domain.depth->nodes : domain.nodes[axis];
-  const double size = axis == 2 ? domain.depth->size : domain.size[axis], spacing = size / nodes;
+  const double size = domain.size[axis], spacing = size / domain.nodes[axis];
   constexpr double rounding = 1e-9;  // a border that is meant to lie on a node shall include it
   if (from < -rounding * size)
     fields.refuse(json::child_pointer(pointer + "/from", static_cast<std::size_t>(axis)),
@@ -51,18 +50,12 @@ FieldStorage read_field_storage(const SceneFields& fields, const Domain& domain)
   fields.attempt([&] {
     const std::string region = "/output/fields/region";
     if (!fields.has(region)) return;
-    std::array<std::vector<double>, 2> corners;
-    for (const std::size_t k : {0, 1}) {
-      const std::string corner = region + (k == 0 ? "/from" : "/to");
-      for (std::size_t axis = 0; fields.has(corner) && axis < fields.count(corner); ++axis)
-        corners[k].push_back(fields.quantity(json::child_pointer(corner, axis), "m", range::place));
-    }
+    const Vector from = fields.place(region + "/from", domain, "corner"),
+                 to = fields.place(region + "/to", domain, "corner");
     if (!fields.settled(region) || !is_known(domain)) return;
-    require_corners(fields, region, {"/from", "/to"}, domain);
     storage.last.emplace();
-    for (std::size_t axis = 0; axis < corners[0].size(); ++axis) {
-      const auto [first, last] =
-          nodes_within(fields, domain, static_cast<int>(axis), corners[0][axis], corners[1][axis]);
+    for (int axis = 0; axis < domain.dimension(); ++axis) {
+      const auto [first, last] = nodes_within(fields, domain, axis, from[axis], to[axis]);
       storage.first[axis] = first;
       (*storage.last)[axis] = last;
     }

@@ -1,5 +1,6 @@
 #include "scene_reader.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/text.hpp"
@@ -72,10 +73,10 @@ double SceneFields::judged_quantity(const std::string& pointer, std::string_view
                           with_unit(si, range.common_unit) + "\", or \"" + with_unit(si, unit) + '"');
     }
     // A length, that is: a place may lie in another image of the box.
-    if (box_ && range.within_box && unit == "m" && range.least > 0 && si > box_->maxCoeff()) {
+    if (box_ && range.within_box && unit == "m" && range.least > 0 && si > box_->most()) {
       refuse(pointer, json::shown(value) + (value.is_number() ? " (a plain number is taken in m)" : "") +
-                          " is longer than the box, which is " + number(box_->x() * 1e6) + " um x " +
-                          number(box_->y() * 1e6) + " um; " + name + " must fit into it");
+                          " is longer than the box, which is " + by_axes(*box_, 1e6, 6, " um") + "; " + name +
+                          " must fit into it");
     }
     return si;
   }
@@ -94,9 +95,23 @@ double SceneFields::quantity_or(const std::string& pointer, std::string_view uni
   return has(pointer) ? quantity(pointer, unit, range) : otherwise;
 }
 
-Eigen::Vector2d SceneFields::quantities(const std::string& pointer, std::string_view unit, AllowedRange range) const {
-  return {quantity(json::child_pointer(pointer, 0U), unit, range),
-          quantity(json::child_pointer(pointer, 1U), unit, range)};
+Vector SceneFields::quantities(const std::string& pointer, std::string_view unit, AllowedRange range,
+                               int dimension) const {
+  Vector read = Vector::filled(dimension, 0);
+  const std::size_t count = std::min(this->count(pointer), static_cast<std::size_t>(dimension));
+  for (std::size_t axis = 0; axis < count; ++axis)
+    read[axis] = quantity(json::child_pointer(pointer, axis), unit, range);
+  return read;
+}
+
+Vector SceneFields::place(const std::string& pointer, const Domain& domain, const char* what) const {
+  const Vector read = quantities(pointer, "m", range::place, domain.dimension());
+  const int lengths = static_cast<int>(count(pointer));
+  if (lengths > domain.dimension() && is_known(domain))
+    refuse(pointer, "there is no z in two dimensions\ngive two lengths");
+  if (lengths < domain.dimension())
+    refuse(pointer, std::string("in three dimensions a ") + what + " has three lengths");
+  return read;
 }
 
 std::filesystem::path SceneFields::file(const std::string& pointer) const {

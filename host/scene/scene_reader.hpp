@@ -1,7 +1,6 @@
 // Reads single values of a document that fits the scene's schema: quantities in SI within their range, names, faults.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -76,7 +75,7 @@ class SceneFields {
   [[nodiscard]] bool settled(const std::string& pointer) const;
 
   /// From here no length may be longer than the box, whose size in m this is.
-  void bound_lengths(const Eigen::Vector2d& box) { box_ = box; }
+  void bound_lengths(const Vector& box) { box_ = box; }
 
   [[nodiscard]] const nlohmann::json& at(const std::string& pointer) const;
   [[nodiscard]] bool has(const std::string& pointer) const;
@@ -86,7 +85,11 @@ class SceneFields {
   [[nodiscard]] double quantity(const std::string& pointer, std::string_view unit, AllowedRange range) const;
   [[nodiscard]] double quantity_or(const std::string& pointer, std::string_view unit, AllowedRange range,
                                    double otherwise) const;
-  [[nodiscard]] Eigen::Vector2d quantities(const std::string& pointer, std::string_view unit, AllowedRange range) const;
+  /// As many of them as the array has, but no more than `dimension`; along other axes 0.
+  [[nodiscard]] Vector quantities(const std::string& pointer, std::string_view unit, AllowedRange range,
+                                  int dimension) const;
+  /// A place in the domain; refused where it has not a length along each axis. `what` is called so: "place".
+  [[nodiscard]] Vector place(const std::string& pointer, const Domain& domain, const char* what = "place") const;
 
   /// How many elements or members the value has.
   [[nodiscard]] std::size_t count(const std::string& pointer) const;
@@ -137,7 +140,7 @@ class SceneFields {
   std::size_t of_schema_ = 0;         ///< how many of them came first
   mutable bool lacks_types_ = false;  ///< it has been said that there are no cell types
   units::Units units_;
-  std::optional<Eigen::Vector2d> box_;
+  std::optional<Vector> box_;
 };
 
 // More cannot be computed.
@@ -148,9 +151,7 @@ inline constexpr std::int64_t most_rows = std::int64_t{1} << 30;            ///<
 inline constexpr int most_nodes_of_side = 1 << 20;
 
 /// Could the domain be read? Only then something can be said that depends on it.
-inline bool is_known(const Domain& domain) {
-  return domain.size.allFinite() && domain.nodes[0] > 0 && (!domain.depth || domain.depth->nodes > 0);
-}
+inline bool is_known(const Domain& domain) { return domain.size.is_finite() && domain.node_count() > 0; }
 
 /// The parts of a scene, each in a file of its own.
 std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity, const Domain& domain);
@@ -163,9 +164,6 @@ std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vect
 RandomPacking read_packing(const SceneFields& fields, const std::string& entry, int type, const Domain& domain);
 std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene);
 Output read_output(const SceneFields& fields, const std::vector<Stage>& stages);
-/// Refuses corners of a region that have not a length along each axis.
-void require_corners(const SceneFields& fields, const std::string& region, const std::array<const char*, 2>& corners,
-                     const Domain& domain);
 FieldStorage read_field_storage(const SceneFields& fields, const Domain& domain);
 /// Refuses cells with more membrane nodes than can be computed.
 void check_membrane_nodes(const Scene& scene);

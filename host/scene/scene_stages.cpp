@@ -20,7 +20,7 @@ void check_mean_velocity(const SceneFields& fields, const Stage& stage, const Sc
   if (walls_move(stage)) {
     fields.refuse_key(key, "a mean velocity is kept between walls at rest; leave it out, or shear_rate and walls");
   }
-  if (scene.domain.periodic_y) {
+  if (scene.domain.periodic[1]) {
     fields.refuse_key(
         key,
         "a mean velocity is kept against walls, but domain.y is \"periodic\"\n"
@@ -68,7 +68,7 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
           pointer + "/" + key,
           "the wall of a tube does not move\ngive pressure_gradient or mean_velocity in place of " + std::string(key));
     }
-    if (!scene.domain.periodic_y) continue;
+    if (!scene.domain.periodic[1]) continue;
     fields.refuse_key(pointer + "/" + key,
                       "shear needs walls that move, but domain.y is \"periodic\"\n"
                       "write \"y\": {\"lower\": {\"wall\": {}}, \"upper\": {\"wall\": {}}}, or leave out " +

@@ -64,10 +64,8 @@ StageSetting make_stage_setting(const Scene& scene, int index) {
   const double mean = setting.units.to_lattice(stage.mean_wall_speed, units::dimension::velocity);
   const double apart = setting.shear_rate * scene.domain.nodes[1] / 2;
   setting.walls = {-(apart - mean), apart + mean};
-  const Eigen::Vector3d force = driving_force(stage, scene);
-  setting.body_force_x = setting.units.to_lattice(force.x(), units::dimension::force_density);
-  setting.body_force_y = setting.units.to_lattice(force.y(), units::dimension::force_density);
-  setting.body_force_z = setting.units.to_lattice(force.z(), units::dimension::force_density);
+  setting.body_force = driving_force(stage, scene);
+  for (double& along : setting.body_force) along = setting.units.to_lattice(along, units::dimension::force_density);
   setting.dimension = scene.domain.dimension();
 
   if (stage.oscillates()) {

@@ -17,31 +17,28 @@ struct StageSetting {
   int index;
   units::LatticeUnits units;
   double tau;
-  double shear_rate;                  ///< lattice
-  core::WallVelocity walls;           ///< lattice
-  double body_force_x, body_force_y;  ///< lattice, body force and pressure gradient
-  double body_force_z;                ///< lattice; 0 in two dimensions
-  core::Oscillation oscillation;      ///< lattice, of walls and body force
-  double oscillating_rate;            ///< lattice, amplitude of the shear rate
-  long max_steps;                     ///< of duration or strain, whichever is shorter
+  double shear_rate;              ///< lattice
+  core::WallVelocity walls;       ///< lattice
+  Vector body_force;              ///< lattice, body force and pressure gradient
+  core::Oscillation oscillation;  ///< lattice, of walls and body force
+  double oscillating_rate;        ///< lattice, amplitude of the shear rate
+  long max_steps;                 ///< of duration or strain, whichever is shorter
   int dimension;
 
   /// Walls or a force put energy in.
-  [[nodiscard]] bool is_driven() const {
-    return fastest_wall() != 0 || largest_body_force_x() != 0 || body_force_y != 0 || body_force_z != 0;
-  }
-  /// Largest speed of a wall and largest force along x that there may be, oscillation included; lattice.
+  [[nodiscard]] bool is_driven() const { return fastest_wall() != 0 || largest_body_force() != Vector(); }
+  /// Largest speed of a wall and largest force that there may be, oscillation included; lattice.
   [[nodiscard]] double fastest_wall() const {
     return std::max(std::abs(walls.lower) + std::abs(oscillation.walls.lower),
                     std::abs(walls.upper) + std::abs(oscillation.walls.upper));
   }
-  [[nodiscard]] double largest_body_force_x() const {
-    return std::abs(body_force_x) + std::abs(oscillation.body_force_x);
+  [[nodiscard]] Vector largest_body_force() const {
+    Vector force = body_force;
+    force.x() = std::abs(force.x()) + std::abs(oscillation.body_force_x);
+    return force;
   }
   /// Largest force that drives a flow, along any axis: what no wall takes; lattice.
-  [[nodiscard]] double largest_drive(const Domain& domain) const {
-    return driving_part({largest_body_force_x(), body_force_y, body_force_z}, domain);
-  }
+  [[nodiscard]] double largest_drive(const Domain& domain) const { return driving_part(largest_body_force(), domain); }
   /// Strain after so many steps of the stage: the shear rate's magnitude, over time.
   [[nodiscard]] double strain_after(long steps) const;
   /// Steps from one output to the next for a time interval in seconds (at least one).

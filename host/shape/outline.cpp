@@ -41,7 +41,7 @@ Curve::Point circle(const scene::Shape& shape, double angle) {
 }
 
 Curve::Point ellipse(const scene::Shape& shape, double angle) {
-  const Eigen::Vector2d axes = std::get<scene::Ellipse>(shape).semi_axes;
+  const scene::Vector axes = std::get<scene::Ellipse>(shape).semi_axes;
   const double c = std::cos(angle), s = std::sin(angle);
   return {{axes.x() * c, axes.y() * s}, {-axes.x() * s, axes.y() * c}};
 }
@@ -54,7 +54,7 @@ Curve curve_of(const scene::Shape& shape) {
 double smallest_size(const scene::Shape& shape) {
   if (const auto* cell = std::get_if<scene::Biconcave>(&shape)) return cell->radius;
   if (const auto* cell = std::get_if<scene::Circle>(&shape)) return cell->radius;
-  return std::get<scene::Ellipse>(shape).semi_axes.minCoeff();
+  return std::get<scene::Ellipse>(shape).semi_axes.least();
 }
 
 /// Angle of the next node: the first one after `angle` where the curve is `chord` away. `stride` is a small part of a
@@ -135,9 +135,9 @@ double shape_radius(const scene::Shape& shape) {
   if (const auto* biconcave = std::get_if<scene::Biconcave>(&shape)) return biconcave->radius;
   if (const auto* circle = std::get_if<scene::Circle>(&shape)) return circle->radius;
   if (const auto* sphere = std::get_if<scene::Sphere>(&shape)) return sphere->radius;
-  if (const auto* ellipsoid = std::get_if<scene::Ellipsoid>(&shape)) return ellipsoid->semi_axes.maxCoeff();
+  if (const auto* ellipsoid = std::get_if<scene::Ellipsoid>(&shape)) return ellipsoid->semi_axes.most();
   if (const auto* mesh = std::get_if<scene::MeshFile>(&shape)) return half_extent(mesh_surface(*mesh));
-  return std::get<scene::Ellipse>(shape).semi_axes.maxCoeff();
+  return std::get<scene::Ellipse>(shape).semi_axes.most();
 }
 
 double smallest_radius(const scene::Scene& scene) {
@@ -152,8 +152,8 @@ double smallest_radius(const scene::Scene& scene) {
 double shape_perimeter(const scene::Shape& shape) {
   if (const auto* biconcave = std::get_if<scene::Biconcave>(&shape)) return 4.9285 * biconcave->radius;
   if (const auto* circle = std::get_if<scene::Circle>(&shape)) return full_turn * circle->radius;
-  const Eigen::Vector2d& a = std::get<scene::Ellipse>(shape).semi_axes;
-  return full_turn / 2 * (3 * a.sum() - std::sqrt((3 * a.x() + a.y()) * (a.x() + 3 * a.y())));
+  const scene::Vector& a = std::get<scene::Ellipse>(shape).semi_axes;
+  return full_turn / 2 * (3 * (a.x() + a.y()) - std::sqrt((3 * a.x() + a.y()) * (a.x() + 3 * a.y())));
 }
 
 double area_of(const Outline& outline) {

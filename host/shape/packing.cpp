@@ -24,9 +24,9 @@ constexpr double least_progress = 0.05;
 
 /// In a tube a region is a piece of it.
 double region_content(const scene::RandomPacking& packing, const scene::Domain& domain) {
-  const Eigen::Vector2d size = packing.upper - packing.lower;
+  const scene::Vector size = packing.upper - packing.lower;
   if (domain.tube_radius) return domain.content() * size.x() / domain.size.x();
-  return size.x() * size.y() * (domain.depth ? packing.upper_z - packing.lower_z : 1);
+  return size.product();
 }
 
 /// Where the cells of one packing may be, and how near to others.
@@ -47,9 +47,7 @@ class Packer {
   Packer(const scene::Domain& domain, const std::vector<scene::CellType>& types,
          const std::vector<scene::RandomPacking>& packings, std::vector<scene::CellPlacement>& cells, double unit)
       : domain_(domain), packings_(packings), cells_(cells), unit_(unit), numbers_(make_numbers(packings)) {
-    box_[0] = {0, domain.size.x() / unit, true};
-    box_[1] = {0, domain.size.y() / unit, domain.periodic_y};
-    if constexpr (D == 3) box_[2] = {0, domain.depth->size / unit, domain.depth->periodic};
+    for (int k = 0; k < D; ++k) box_[k] = {0, domain.size[k] / unit, domain.periodic[k]};
     double least_gap = packings.front().gap;
     for (const scene::RandomPacking& packing : packings) least_gap = std::min(least_gap, packing.gap);
     for (const scene::CellPlacement& cell : cells) {
@@ -81,8 +79,7 @@ class Packer {
     if (const auto stuck = grow(watch)) return shortfall(*stuck);
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       if (owner_[i] == obstacle) continue;
-      cells_[i].center = {bodies_[i].center[0] * unit_, bodies_[i].center[1] * unit_};
-      if constexpr (D == 3) cells_[i].z = bodies_[i].center[2] * unit_;
+      for (int k = 0; k < D; ++k) cells_[i].center[k] = bodies_[i].center[k] * unit_;
       Solid::put(bodies_[i].orientation, cells_[i]);
     }
     return std::nullopt;
@@ -110,9 +107,7 @@ class Packer {
       return own;
     };
     Territory<D> own{{}, gap};
-    own.axes[0] = axis(packing.lower.x(), packing.upper.x(), box_[0]);
-    own.axes[1] = axis(packing.lower.y(), packing.upper.y(), box_[1]);
-    if constexpr (D == 3) own.axes[2] = axis(packing.lower_z, packing.upper_z, box_[2]);
+    for (int k = 0; k < D; ++k) own.axes[k] = axis(packing.lower[k], packing.upper[k], box_[k]);
     if (domain_.tube_radius) own.radius = std::max(*domain_.tube_radius / unit_ - gap, 0.0);
     return own;
   }
@@ -121,7 +116,7 @@ class Packer {
     const scene::CellPlacement& cell = cells_[i];
     Body& body = bodies_[i];
     body = {&solids_.at(cell.type), {}, Solid::of(cell), 1};
-    for (int k = 0; k < D; ++k) body.center[k] = box_[k].wrapped((k < 2 ? cell.center[k] : cell.z) / unit_);
+    for (int k = 0; k < D; ++k) body.center[k] = box_[k].wrapped(cell.center[k] / unit_);
     grid_->add(i, body.center);
   }
 
@@ -239,11 +234,9 @@ class Packer {
         place[k] = body.center[k] + body.scale * place[k];
         if (!own.axes[k].periodic && !(place[k] >= own.axes[k].lower && place[k] <= own.axes[k].upper)) return false;
       }
-      if constexpr (D == 3) {
-        const double y = place[1] - 0.5 * box_[1].upper, z = place[2] - 0.5 * box_[2].upper;
-        if (domain_.tube_radius && y * y + z * z > own.radius * own.radius) return false;
-      }
-      return true;
+      double square = 0;  // of the distance from the axis of a tube
+      for (int k = 1; k < D; ++k) square += std::pow(place[k] - 0.5 * box_[k].upper, 2);
+      return !domain_.tube_radius || square <= own.radius * own.radius;
     });
   }
 
@@ -319,7 +312,7 @@ std::optional<PackingShortfall> pack(const scene::Domain& domain, const std::vec
   // Of the types that have cells: one that has none may be so large that rounding would deform the others.
   double unit = 0;
   for (const scene::CellPlacement& cell : cells) unit = std::max(unit, shape_radius(types[cell.type].shape));
-  if (domain.depth) return Packer<RigidSurface>(domain, types, packings, cells, unit).pack(watch);
+  if (domain.dimension() == 3) return Packer<RigidSurface>(domain, types, packings, cells, unit).pack(watch);
   return Packer<RigidOutline>(domain, types, packings, cells, unit).pack(watch);
 }
 

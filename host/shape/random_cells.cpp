@@ -30,7 +30,7 @@ int count_for_share(const scene::SceneFields& fields, const scene::RandomPacking
 
 /// Refuses what is hopeless before it is tried: pack() takes its time, and looks at every periodic image that is near.
 void check_lengths(const scene::SceneFields& fields, const scene::RandomPacking& packing, const scene::CellType& type) {
-  const double across = std::hypot((packing.upper - packing.lower).norm(), packing.upper_z - packing.lower_z);
+  const double across = (packing.upper - packing.lower).norm();
   const double length = 2 * shape_radius(type.shape);
   const auto micrometres = [](double metres) { return number(metres * 1e6) + " um"; };
   const auto room = micrometres(across) + " from corner to corner";
@@ -64,13 +64,12 @@ void add_random_cells(scene::Scene& scene) {
     fields.require_room(scene.cells.size(), static_cast<std::size_t>(packing.count), packing.pointer + "/random");
     packing.first += added;
     added += packing.count;
-    const Eigen::Vector2d middle = (packing.lower + packing.upper) / 2;
+    const scene::Vector middle = 0.5 * (packing.lower + packing.upper);
     const auto first = scene.cells.insert(scene.cells.begin() + packing.first, static_cast<std::size_t>(packing.count),
                                           {packing.type, middle, 0, packing.pointer});
     // Until they are placed they stand for any cells of their region: at all heights of it.
     for (int i = 0; i < packing.count; ++i) {
       first[i].center.y() = packing.lower.y() + (i + 0.5) / packing.count * (packing.upper.y() - packing.lower.y());
-      first[i].z = (packing.lower_z + packing.upper_z) / 2;
     }
   }
   scene::check_membrane_nodes(scene);
@@ -78,7 +77,7 @@ void add_random_cells(scene::Scene& scene) {
 
 void pack_cells(scene::Scene& scene, const PackingWatch& watch) {
   if (scene.packings.empty()) return;
-  const double across = scene.domain.diagonal();
+  const double across = scene.domain.size.norm();
   for (const scene::CellPlacement& cell : scene.cells) {
     const scene::CellType& type = scene.cell_types[cell.type];
     if (2 * shape_radius(type.shape) <= across) continue;

@@ -129,7 +129,7 @@ TriangleSurface make_surface(const scene::CellType& type) {
   if (const auto* mesh = std::get_if<scene::MeshFile>(&type.shape)) return mesh_surface(*mesh);
   const int n = static_cast<int>(std::lround(std::sqrt(type.triangles / 20.0)));
   if (const auto* disc = std::get_if<scene::Biconcave>(&type.shape)) return biconcave_disc(n, disc->radius);
-  if (const auto* solid = std::get_if<scene::Ellipsoid>(&type.shape)) return ellipsoid(n, solid->semi_axes);
+  if (const auto* solid = std::get_if<scene::Ellipsoid>(&type.shape)) return ellipsoid(n, solid->semi_axes.in<3>());
   return ellipsoid(n, Vec<3>::Constant(std::get<scene::Sphere>(type.shape).radius));
 }
 

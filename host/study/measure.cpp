@@ -140,7 +140,7 @@ Measured of_series(const Quantity& quantity, const std::filesystem::path& direct
   if (!quantity.intrinsic || !result.why_not.empty()) return result;
   const scene::Scene scene = plan::read_unpacked_scene(directory / "scene.json").scene;
   const files::StoredTable cells(directory / "cells.csv");
-  const Outputs enclosed(cells, scene.domain.depth ? "volume_m3" : "area_m2", -1, sum);
+  const Outputs enclosed(cells, scene.domain.words().content_column, -1, sum);
   if (enclosed.values.empty() || !(enclosed.values[0] > 0))
     return undefined_because("the run has no cells that could thicken the fluid");
   result.value = (result.value - 1) / (enclosed.values[0] / scene.domain.content());

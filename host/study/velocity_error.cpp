@@ -22,7 +22,7 @@ std::string why_no_exact_flow(const scene::Scene& scene) {
   if (!scene.cells.empty() || !scene.packings.empty())
     return "the scene has cells, and the exact flow is of the fluid alone";
   if (!scene.fluid.layers.empty()) return "the fluid has layers, and the exact flow is of one viscosity";
-  if (!scene.domain.periodic_y) return "";
+  if (!scene.domain.periodic[1]) return "";
   return scene.domain.is_duct() ? "the scene has no walls across y" : "the scene has no walls";
 }
 std::string why_no_exact_flow(const Quantity& quantity, const scene::Scene& scene, const scene::Stage& stage,
@@ -52,7 +52,7 @@ ExactFlow exact_flow(const Quantity& quantity, const scene::Scene& scene, const 
   const double viscosity = scene.fluid.viscosity, force = scene::driving_force(stage, scene).x() / viscosity;
   const double kinematic = viscosity / (scene.fluid.density * stage.density_factor);  // as it is simulated
   constexpr double long_ago = std::numeric_limits<double>::infinity();
-  const double height = domain.size.y(), half = height / 2, half_depth = domain.depth ? domain.depth->size / 2 : 0;
+  const double height = domain.size.y(), half = height / 2, half_depth = domain.size.z() / 2;
   if (domain.tube_radius) {
     const double radius = *domain.tube_radius, fastest = force * radius * radius / 4;
     const double since = quantity.steady ? long_ago : time * kinematic / (radius * radius);

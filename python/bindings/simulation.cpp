@@ -240,7 +240,7 @@ std::unique_ptr<Simulation> make_simulation(const SceneChoice& choice) {
   };
   plan::ReadScene read = plan::read_within_limits(choice.file, choice.overrides, catalog_of);
   plugin::Catalog catalog = catalog_of(read.scene);
-  if (read.scene.domain.depth) return std::make_unique<SimulationOf<3>>(std::move(read), std::move(catalog));
+  if (read.scene.domain.dimension() == 3) return std::make_unique<SimulationOf<3>>(std::move(read), std::move(catalog));
   return std::make_unique<SimulationOf<2>>(std::move(read), std::move(catalog));
 }
 

@@ -65,7 +65,7 @@ class Simulation {
   /// A sentence for each library that comes with the scene.
   [[nodiscard]] std::vector<std::string> code_of_the_scene() const { return plan::code_of_the_scene(plan_); }
   /// Whether the scene has three dimensions.
-  [[nodiscard]] bool in_space() const { return scene().domain.depth.has_value(); }
+  [[nodiscard]] bool in_space() const { return scene().domain.dimension() == 3; }
 
  protected:
   Simulation(plan::ReadScene read, plugin::Catalog catalog);

@@ -50,9 +50,9 @@ TEST_CASE("a capsule lowers the flow rate of a channel by what the reciprocal th
   bench.start();
   const scene::StageSetting& stage = bench.plan.stages[0];
   const double viscosity = (stage.tau - 0.5) / 3, height = 64, length = 64;
-  const auto alone = [&](double y) { return stage.body_force_x / (2 * viscosity) * (y + 0.5) * (height - 0.5 - y); };
+  const auto alone = [&](double y) { return stage.body_force.x() / (2 * viscosity) * (y + 0.5) * (height - 0.5 - y); };
   Fluid<double>& fluid = bench.solver->fluid();
-  fluid.set_profile(alone, [&](double y) { return stage.body_force_x / viscosity * (height / 2 - 0.5 - y); });
+  fluid.set_profile(alone, [&](double y) { return stage.body_force.x() / viscosity * (height / 2 - 0.5 - y); });
   bench.step(120000);
   bench.forces();
   fluid.settle();
@@ -60,11 +60,11 @@ TEST_CASE("a capsule lowers the flow rate of a channel by what the reciprocal th
   for (std::size_t i = 0; i < bench.membranes.position[0].size(); ++i) {
     power += bench.membranes.force[0][i] * alone(bench.membranes.position[1][i]);
   }
-  const double expected = power / (stage.body_force_x * length);
-  const double rate = flow_rate(fluid), undisturbed = stage.body_force_x * std::pow(height, 3) / (12 * viscosity);
+  const double expected = power / (stage.body_force.x() * length);
+  const double rate = flow_rate(fluid), undisturbed = stage.body_force.x() * std::pow(height, 3) / (12 * viscosity);
   std::cout << "driven capsule: flow rate changes by " << (rate - undisturbed) / undisturbed << ", by the reciprocal "
             << "theorem " << expected / undisturbed << ", relative viscosity "
-            << apparent_viscosity(rate, stage.body_force_x, stage, 64) << "\n";
+            << apparent_viscosity(rate, stage.body_force.x(), stage, 64) << "\n";
   CHECK(expected < 0);
   // What is left is the unsteady term: the mean flow follows the capsule's way to the middle late. 7.0, 5.1, 2.5 and
   // 0.3 % after 1, 2, 4 and 8 s; after 1 s half as much with half the density factor.

@@ -48,7 +48,7 @@ inline Scene biconcave_scene(const std::vector<Placed>& places, core::Domain<2> 
   scene.domain.nodes = {static_cast<int>(domain.period(0)),
                         domain.periodic[1] ? static_cast<int>(domain.period(1)) : height};
   scene.domain.size = {domain.period(0), static_cast<double>(scene.domain.nodes[1])};
-  scene.domain.periodic_y = domain.periodic[1];
+  scene.domain.periodic[1] = domain.periodic[1];
   scene.cell_types.push_back({"red", Biconcave{20.0}, segments, 1.0, {}});
   for (std::size_t i = 0; i < places.size(); ++i) {
     scene.cells.push_back({0, {places[i].x + 0.5, places[i].y + 0.5}, places[i].angle, "/cells/" + std::to_string(i)});

@@ -77,7 +77,7 @@ core::Decomposition<D> cut(const Plan& plan, int ranks) {
 }  // namespace
 
 int most_blocks(const Plan& plan) {
-  const int least_depth = plan.scene->domain.depth ? least_height : 1;
+  const int least_depth = plan.scene->domain.dimension() == 3 ? least_height : 1;
   const double most = plan.scene->domain.node_count() / (least_width * least_height * least_depth);
   return static_cast<int>(std::min(most, 1e9));
 }
@@ -109,11 +109,11 @@ Blocks make_blocks(const Plan& plan, int ranks) {
     const std::string height = std::to_string(least_height);
     throw Error(Cause::bad_input, scene.place("/domain/nodes"),
                 std::to_string(ranks) + " ranks are more than the " + std::to_string(most) + " blocks of " +
-                    std::to_string(least_width) + " x " + height + (scene.domain.depth ? " x " + height : "") +
-                    " nodes that the lattice has room for",
+                    std::to_string(least_width) + " x " + height +
+                    (scene.domain.dimension() == 3 ? " x " + height : "") + " nodes that the lattice has room for",
                 {"take fewer ranks"});
   }
-  if (scene.domain.depth) return cut<3>(plan, ranks);
+  if (scene.domain.dimension() == 3) return cut<3>(plan, ranks);
   return cut<2>(plan, ranks);
 }
 

@@ -27,8 +27,8 @@ bool is_crowded(const scene::Scene& scene, std::size_t a, std::size_t b) {
   const double room = inner_radius(scene.cells[a].type) + inner_radius(scene.cells[b].type);
   for (int i = -4; i <= 4; ++i) {
     for (int j = -4; j <= 4; ++j) {
-      if (j != 0 && !scene.domain.periodic_y) continue;
-      const Eigen::Vector2d image(i * scene.domain.size.x(), j * scene.domain.size.y());
+      if (j != 0 && !scene.domain.periodic[1]) continue;
+      const scene::Vector image(i * scene.domain.size.x(), j * scene.domain.size.y());
       if ((scene.cells[a].center - scene.cells[b].center + image).norm() < room) return true;
     }
   }

@@ -95,7 +95,7 @@ TEST_CASE("a force that walls hold drives nothing, and compresses cells at them"
     CHECK(held.report.dimensionless.at("reynolds_physical") == 0);
     const scene::StageSetting& stage = held.plan.stages[0];
     CHECK(held.limits().at("compression of cells by a force across walls (stage flow)") ==
-          Approx(1.5 * (std::abs(stage.body_force_y) + stage.body_force_z) * 24));
+          Approx(1.5 * (std::abs(stage.body_force.y()) + stage.body_force.z()) * 24));
     CHECK(held.report.late_starts.empty());
   }
 }

@@ -192,7 +192,7 @@ TEST_CASE("what a scene gives is not chosen") {
                                        "/cell_types/capsule/segments=90", "/numerics/slip_correction=false"});
   CHECK(scene.numerics.tau == 0.8);
   CHECK(scene.numerics.density_factor == 1000);
-  CHECK(scene.domain.nodes == std::array<int, 2>{160, 80});
+  CHECK(scene.domain.nodes == std::vector<int>{160, 80});
   CHECK(scene.cell_types[0].segments == 90);
   CHECK_FALSE(scene.numerics.slip_correction);
   CHECK(scene.numerics.area_correction);
@@ -296,9 +296,6 @@ namespace {
 
 const std::string in_space = "/auto-capsule-3d.json";
 
-std::vector<int> lattice_of(const Scene& scene) {
-  return {scene.domain.nodes[0], scene.domain.nodes[1], scene.domain.depth->nodes};
-}
 std::string domain_of(const std::string& size, const std::string& walls) {
   return "/domain={\"size\": " + size + ", " + walls + "}";
 }
@@ -350,14 +347,14 @@ TEST_CASE("a lattice of three dimensions has the ratios of its domain, and nodes
   const std::string walls = R"("y": {"lower": {"wall": {}}, "upper": {"wall": {}}})";
   const std::string sides = domain_of(R"(["24 um", "12 um", "18 um"])", walls),
                     inside = R"(/cells/0/at=["12 um", "6 um", "9 um"])";
-  const std::vector<int> chosen_nodes = lattice_of(chosen({sides, inside}, in_space).scene);
+  const std::vector<int> chosen_nodes = chosen({sides, inside}, in_space).scene.domain.nodes;
   CHECK(chosen_nodes[0] == 2 * chosen_nodes[1]);
   CHECK(2 * chosen_nodes[2] == 3 * chosen_nodes[1]);
   const std::string more = R"("nodes": [96, 48, 72], )";
   const auto [scene, choice] = chosen({domain_of(R"(["24 um", "12 um", "18 um"])", more + walls), inside,
                                        "/numerics/tau=1.5", "/cell_types/capsule/triangles=2880"},
                                       in_space);
-  CHECK(lattice_of(scene) == std::vector<int>{96, 48, 72});
+  CHECK(scene.domain.nodes == std::vector<int>{96, 48, 72});
   CHECK(scene.numerics.tau == 1.5);
   CHECK(scene.cell_types[0].triangles == 2880);
   for (const ChosenValue& value : choice->values) CHECK(value.pointer.starts_with("/numerics/"));
@@ -380,7 +377,7 @@ TEST_CASE("without cells a lattice of three dimensions resolves what lies betwee
     CHECK(read.numerics_choice->expected.total() <= target);
     CHECK(read.numerics_choice->doubt.empty());
     CHECK(read.scene.numerics.density_factor == 1);
-    return lattice_of(read.scene);
+    return read.scene.domain.nodes;
   };
   CHECK(of("\"y\": " + wall + ", \"z\": " + wall, 0.01) == std::vector<int>{4, 32, 32});
   // A tube's radius has eight spacings at least, more where its flow rate asks for them (0.65 over the square of the radius).

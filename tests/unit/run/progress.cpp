@@ -40,7 +40,7 @@ TEST_CASE("a terminal of 80 columns has a bar, and its numbers stay in their pla
 TEST_CASE("where nothing attracts there is no word of rouleaux, and in three dimensions a volume drifts") {
   ProgressState close = state;
   close.rouleaux = -1;
-  close.in_space = true;
+  close.drifting = "volume";
   const std::string line = progress_line(close, 12345, 65, 150);
   CHECK(!shows(line, "rouleau"));
   CHECK(shows(line, "volume drift"));

@@ -26,7 +26,7 @@ constexpr double um = 1e-6, spacing = 0.2e-6;
 /// A box in two dimensions.
 struct Packed : PackedScene<Packed> {
   Packed(int nx, int ny, bool periodic_y, std::vector<Shape> shapes = {Biconcave{3.91 * um}}, int segments = 80) {
-    scene.domain = {{nx * spacing, ny * spacing}, {nx, ny}, periodic_y, {}};
+    scene.domain = {{nx * spacing, ny * spacing}, {nx, ny}, {true, periodic_y, true}};
     for (Shape& shape : shapes) {
       scene.cell_types.push_back({"type" + std::to_string(scene.cell_types.size()), shape, segments, 6e-3, {}});
     }
@@ -43,7 +43,7 @@ std::vector<Points> outlines(const Scene& scene) {
   for (const CellPlacement& cell : scene.cells) {
     const auto& type = scene.cell_types[cell.type];
     Points points = make_outline(type.shape, type.segments).nodes;
-    for (auto& p : points) p = cell.center + Eigen::Rotation2D<double>(cell.angle) * p;
+    for (auto& p : points) p = cell.center.in<2>() + Eigen::Rotation2D<double>(cell.angle) * p;
     all.push_back(std::move(points));
   }
   return all;
@@ -66,10 +66,10 @@ double smallest_gap_of_all(const Scene& scene) {
   for (std::size_t a = 0; a < all.size(); ++a) {
     for (std::size_t b = 0; b < all.size(); ++b) {
       for (int ix = -1; ix <= 1; ++ix) {
-        for (int iy = scene.domain.periodic_y ? -1 : 0; iy <= (scene.domain.periodic_y ? 1 : 0); ++iy) {
+        for (int iy = scene.domain.periodic[1] ? -1 : 0; iy <= (scene.domain.periodic[1] ? 1 : 0); ++iy) {
           if (a == b && ix == 0 && iy == 0) continue;
           const Eigen::Vector2d shift(ix * scene.domain.size.x(), iy * scene.domain.size.y());
-          if ((scene.cells[a].center - scene.cells[b].center - shift).norm() > 9 * um) continue;
+          if (((scene.cells[a].center - scene.cells[b].center).in<2>() - shift).norm() > 9 * um) continue;
           for (const auto& node : all[a]) least = std::min(least, distance(node, all[b], shift));
         }
       }
@@ -113,7 +113,7 @@ TEST_CASE("packed cells keep their gap from each other, from images and from wal
   }
   if (!periodic) CHECK(wall >= gap);
   const double cell = enclosed / static_cast<double>(packed.scene.cells.size());
-  CHECK(std::abs(enclosed - share * packed.scene.domain.size.prod()) <= 0.5 * cell * (1 + 1e-6));
+  CHECK(std::abs(enclosed - share * packed.scene.domain.size.product()) <= 0.5 * cell * (1 + 1e-6));
 }
 
 TEST_CASE("the same seed packs the same cells and another seed others") {

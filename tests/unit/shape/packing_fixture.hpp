@@ -24,9 +24,8 @@ struct PackedScene {
     packing.type = type;
     packing.seed = seed;
     packing.gap = gap;
-    packing.lower = Eigen::Vector2d::Zero();
+    packing.lower = scene::Vector::filled(scene.domain.dimension(), 0);
     packing.upper = scene.domain.size;
-    packing.upper_z = scene.domain.depth ? scene.domain.depth->size : 0;
     scene.packings.push_back(packing);
     return scene.packings.back();
   }
@@ -44,8 +43,7 @@ struct PackedScene {
   Packed& run(const shape::PackingWatch& watch = {}) {
     for (scene::RandomPacking& packing : scene.packings) {
       packing.first = static_cast<int>(scene.cells.size());
-      for (int i = 0; i < packing.count; ++i)
-        scene.cells.push_back({packing.type, Eigen::Vector2d::Zero(), 0, "/cells"});
+      for (int i = 0; i < packing.count; ++i) scene.cells.push_back({packing.type, packing.lower, 0, "/cells"});
     }
     shortfall = shape::pack(scene.domain, scene.cell_types, scene.packings, scene.cells, watch);
     return self();

@@ -32,10 +32,9 @@ constexpr double um = 1e-6, spacing = 0.5e-6;
 struct Packed : PackedScene<Packed> {
   Packed(std::array<int, 3> nodes, bool periodic_y, bool periodic_z,
          const std::vector<Shape>& shapes = {Biconcave{3.91 * um}}) {
-    scene.domain = {{nodes[0] * spacing, nodes[1] * spacing},
-                    {nodes[0], nodes[1]},
-                    periodic_y,
-                    Depth{nodes[2] * spacing, nodes[2], periodic_z}};
+    scene.domain = {{nodes[0] * spacing, nodes[1] * spacing, nodes[2] * spacing},
+                    {nodes.begin(), nodes.end()},
+                    {true, periodic_y, periodic_z}};
     for (const Shape& shape : shapes) {
       CellType type{"type" + std::to_string(scene.cell_types.size()), shape, 0, 6e-3, {}};
       type.triangles = 1280;
@@ -56,7 +55,7 @@ std::vector<Placed> placed_cells(const Scene& scene) {
     Placed placed{make_surface(scene.cell_types[cell.type]), {}};
     const Eigen::Matrix3d turn = rotation_of(cell);
     for (Vec<3>& node : placed.surface.nodes) {
-      node = Vec<3>(cell.center.x(), cell.center.y(), cell.z) + turn * node;
+      node = cell.center.in<3>() + turn * node;
       placed.box.extend(node);
     }
     all.push_back(std::move(placed));
@@ -110,10 +109,10 @@ double smallest_gap_of_all(const Scene& scene, double most) {
   for (std::size_t a = 0; a < all.size(); ++a) {
     for (std::size_t b = 0; b <= a; ++b) {
       for (int ix = -2; ix <= 2; ++ix) {
-        for (int iy = domain.periodic_y ? -2 : 0; iy <= (domain.periodic_y ? 2 : 0); ++iy) {
-          for (int iz = domain.depth->periodic ? -2 : 0; iz <= (domain.depth->periodic ? 2 : 0); ++iz) {
+        for (int iy = domain.periodic[1] ? -2 : 0; iy <= (domain.periodic[1] ? 2 : 0); ++iy) {
+          for (int iz = domain.periodic[2] ? -2 : 0; iz <= (domain.periodic[2] ? 2 : 0); ++iz) {
             if (a == b && ix == 0 && iy == 0 && iz == 0) continue;
-            const Vec<3> shift(ix * domain.size.x(), iy * domain.size.y(), iz * domain.depth->size);
+            const Vec<3> shift(ix * domain.size.x(), iy * domain.size.y(), iz * domain.size.z());
             const Eigen::AlignedBox3d moved(all[b].box.min() + shift, all[b].box.max() + shift);
             if (all[a].box.exteriorDistance(moved) < least) least = distance(all[a], all[b], shift, least);
           }
@@ -127,8 +126,8 @@ double smallest_gap_of_all(const Scene& scene, double most) {
 std::uint64_t hash_of(const Scene& scene) {
   HashOfBits hash;
   for (const CellPlacement& cell : scene.cells) {
-    for (const double value :
-         {cell.center.x(), cell.center.y(), cell.z, cell.axis->x(), cell.axis->y(), cell.axis->z(), cell.angle})
+    for (const double value : {cell.center.x(), cell.center.y(), cell.center.z(), cell.axis->x(), cell.axis->y(),
+                               cell.axis->z(), cell.angle})
       hash.add(value);
   }
   return hash.value();
@@ -148,7 +147,7 @@ TEST_CASE("cells packed in space keep their gap from each other, from images and
   double wall_y = 1, wall_z = 1;
   for (const Placed& cell : placed_cells(packed.scene)) {
     wall_y = std::min({wall_y, cell.box.min().y(), domain.size.y() - cell.box.max().y()});
-    wall_z = std::min({wall_z, cell.box.min().z(), domain.depth->size - cell.box.max().z()});
+    wall_z = std::min({wall_z, cell.box.min().z(), domain.size.z() - cell.box.max().z()});
   }
   if (!periodic_y) CHECK(wall_y >= gap);
   if (!periodic_z) CHECK(wall_z >= gap);
@@ -179,7 +178,7 @@ TEST_CASE("at a low hematocrit places, axes and angles are uniform in space") {
     angle.push_back(part(cell.angle, 2 * std::numbers::pi));
     x.push_back(part(cell.center.x(), domain.size.x()));
     y.push_back(part(cell.center.y(), domain.size.y()));
-    z.push_back(part(cell.z, domain.depth->size));
+    z.push_back(part(cell.center.z(), domain.size.z()));
   }
   // 12 bins, 11 degrees of freedom: 1.59 and 31.3 are passed by chance once in 2000 each. The seed is fixed.
   for (const auto* values : {&height, &azimuth, &angle, &x, &y, &z}) {
@@ -217,10 +216,7 @@ TEST_CASE("other cells are obstacles in space and several packings share the roo
   Packed packed({50, 40, 44}, true, true,
                 {Biconcave{3.91 * um}, Sphere{2 * um}, Ellipsoid{{1.5 * um, 1 * um, 4 * um}}});
   const auto obstacle = [&](int type, Vec<3> at, std::optional<Eigen::Vector3d> axis, double angle) {
-    CellPlacement cell{type, at.head<2>() * um, angle, "/cells"};
-    cell.z = at.z() * um;
-    cell.axis = axis;
-    packed.scene.cells.push_back(cell);
+    packed.scene.cells.push_back({type, {at.x() * um, at.y() * um, at.z() * um}, angle, "/cells", 0, axis});
   };
   obstacle(0, {12, 10, 11}, Eigen::Vector3d(0.6, 0.8, 0), 0.5);
   obstacle(2, {0.3, 19.5, 0.2}, std::nullopt, 0.7);           // reaches over the borders
@@ -237,17 +233,17 @@ TEST_CASE("other cells are obstacles in space and several packings share the roo
 
 TEST_CASE("no cell is packed into a larger one, nor around a smaller one", "[many-cells]") {
   Packed packed({48, 48, 48}, true, true, {Sphere{9 * um}, Sphere{1 * um}});
-  packed.scene.cells.push_back({0, {12 * um, 12 * um}, 0, "/cells", 0, 12 * um});
+  packed.scene.cells.push_back({0, {12 * um, 12 * um, 12 * um}, 0, "/cells"});
   packed.count(1, 200, 4, 0.1e-6).run();
   REQUIRE_FALSE(packed.shortfall);
   for (std::size_t i = 1; i < packed.scene.cells.size(); ++i) {
     const CellPlacement& cell = packed.scene.cells[i];
-    CHECK((Vec<3>(cell.center.x(), cell.center.y(), cell.z) - Vec<3>::Constant(12 * um)).norm() > 9.9 * um);
+    CHECK((cell.center.in<3>() - Vec<3>::Constant(12 * um)).norm() > 9.9 * um);
   }
   Packed around({48, 48, 48}, true, true, {Sphere{2.2 * um}, Sphere{0.5 * um}});
   for (int i = 0; i < 64; ++i) {
-    around.scene.cells.push_back({1, {(3 + 6 * (i % 4)) * um, (3 + 6 * (i / 4 % 4)) * um}, 0, "/cells"});
-    around.scene.cells.back().z = (3 + 6 * (i / 16)) * um;
+    around.scene.cells.push_back(
+        {1, {(3 + 6 * (i % 4)) * um, (3 + 6 * (i / 4 % 4)) * um, (3 + 6 * (i / 16)) * um}, 0, "/cells"});
   }
   around.count(0, 30, 4, 0.1e-6).run();
   REQUIRE_FALSE(around.shortfall);
@@ -294,10 +290,8 @@ TEST_CASE("rigid surfaces keep the gap that is asked for, and hardly more") {
 TEST_CASE("cells stay in their region of space") {
   Packed packed({60, 60, 60}, false, true);
   RandomPacking& packing = packed.add(0, 9, 0.3e-6);
-  packing.lower = {8 * um, 6 * um};
-  packing.upper = {26 * um, 30 * um};
-  packing.lower_z = 5 * um;
-  packing.upper_z = 20 * um;
+  packing.lower = {8 * um, 6 * um, 5 * um};
+  packing.upper = {26 * um, 30 * um, 20 * um};
   packing.count = static_cast<int>(cells_for(0.2, packed.scene.cell_types[0], packing, packed.scene.domain));
   packed.run();
   REQUIRE_FALSE(packed.shortfall);
