@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "command/commands.hpp"
 #include "command/process/crew.hpp"

@@ -7,13 +7,13 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "base/sha256.hpp"
 #include "files/file_lock.hpp"
 #include "files/run_directory.hpp"
 #include "files/verify.hpp"
 #include "json/document.hpp"
 #include "plan/limits.hpp"
 #include "plan/plan_report.hpp"
-#include "plugin/library.hpp"
 #include "refinement.hpp"
 #include "run/simulation.hpp"
 #include "scene/scene_reader.hpp"
@@ -183,7 +183,7 @@ Round run_until_stable(const scene::Scene& scene, const RunCost& cost, const fs:
 Finished finished_run(const fs::path& directory, const scene::Scene& scene) {
   const Json summary = trial::read_summary(directory);
   if (!summary.is_object() || summary.value("status", "") != "completed") return Finished::no;
-  if (summary.value("scene_sha256", "") != plugin::sha256_of(files::scene_text(*scene.document))) return Finished::no;
+  if (summary.value("scene_sha256", "") != sha256_of(files::scene_text(*scene.document))) return Finished::no;
   const Json stages = summary.value("stages", Json::array());
   if (stages.empty() || stages.back().value("ended_by", "") == "max_steps") return Finished::no;
   return summary.contains("error_bars") ? Finished::with_bars : Finished::without_bars;

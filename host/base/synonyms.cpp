@@ -116,4 +116,9 @@ std::string likely(std::string_view word, const std::vector<std::string>& candid
   return meant.empty() ? nearest(word, candidates) : meant;
 }
 
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
+  const auto near = likely(word, candidates);
+  return near.empty() || near == word ? "" : "; did you mean " + in_quotes(near) + "?";
+}
+
 }  // namespace rouleau

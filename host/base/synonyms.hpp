@@ -1,4 +1,4 @@
-// Common words for what goes by another name here, beside the search for the nearest name (text.hpp).
+// What a word was meant to be: common words for what goes by another name here, or the nearest name (text.hpp).
 #pragma once
 
 #include <span>
@@ -21,5 +21,8 @@ std::string synonym(std::string_view word, const std::vector<std::string>& candi
 /// The candidate that a word was most likely meant to be: ours for it, or else the nearest in spelling; empty where there
 /// is none.
 std::string likely(std::string_view word, const std::vector<std::string>& candidates);
+
+/// `; did you mean "tau"?`, or nothing when no candidate is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace rouleau

@@ -6,8 +6,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "synonyms.hpp"
-
 namespace rouleau {
 namespace {
 
@@ -131,11 +129,6 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
     }
   }
   return best;
-}
-
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
-  const auto near = likely(word, candidates);
-  return near.empty() || near == word ? "" : "; did you mean " + in_quotes(near) + "?";
 }
 
 std::string misspelt(std::string_view word, const std::vector<std::string>& candidates) {

@@ -26,9 +26,6 @@ std::string listed(const std::vector<std::string>& words);
 /// The candidate that `word` was most likely meant to be, or empty when none is near.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
-/// `; did you mean "tau"?`, or nothing when no candidate is near.
-std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
-
 /// The candidate that the word is, or is but for one letter in six; empty when there is none.
 std::string misspelt(std::string_view word, const std::vector<std::string>& candidates);
 

@@ -10,6 +10,7 @@
 #include <regex>
 
 #include "base/installation.hpp"
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "command/process/command_line.hpp"
 #include "commands.hpp"

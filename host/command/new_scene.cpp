@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "command/process/command_line.hpp"
 #include "files/file.hpp"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "command/process/command_line.hpp"
 #include "command/process/terminal.hpp"

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "base/sha256.hpp"
 #include "command/process/crew.hpp"
 #include "command/process/program.hpp"
 #include "files/checkpoint_file.hpp"
@@ -35,7 +36,7 @@ std::string mathematics() {
 std::vector<Crew::Fact> facts_of(const PlannedScene& planned) {
   std::vector<Crew::Fact> facts{{"the program", trial::program_sha256()},
                                 {"the C library", mathematics()},
-                                {"the scene", plugin::sha256_of(files::scene_text(*planned.read.scene.document))}};
+                                {"the scene", sha256_of(files::scene_text(*planned.read.scene.document))}};
   for (const plan::PlannedModel* model : planned.plan.active_models()) {
     const plugin::Manifest& manifest = *model->manifest;
     facts.push_back({"the manifest of plugin " + manifest.id, manifest.sha256, Cause::plugin_refused});

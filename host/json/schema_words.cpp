@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "shown.hpp"
 

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "base/input_file.hpp"
+#include "base/sha256.hpp"
 #include "base/text.hpp"
 #include "constants.hpp"
 #include "json/document.hpp"
 #include "limits.hpp"
 #include "plan.hpp"
-#include "plugin/library.hpp"
 #include "scene/named_files.hpp"
 #include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
@@ -61,7 +61,7 @@ void pin_files(json::Document& document) {
     std::error_code ignored;
     if (name.find('\0') != std::string::npos || !std::filesystem::is_regular_file(file, ignored)) continue;
     static_cast<void>(InputFile(file, largest_named));  // before hours of hashing
-    const std::string found = plugin::sha256(file);
+    const std::string found = sha256(file);
     if (!wanted.empty() && wanted != found) {
       throw Error(
           Cause::bad_input, document.place(entry + "/sha256"),

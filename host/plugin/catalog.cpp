@@ -6,8 +6,10 @@
 #include <set>
 
 #include "base/installation.hpp"
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "json/document.hpp"
+#include "manifest_reader.hpp"
 #include "manifest_search.hpp"
 #include "trust.hpp"
 

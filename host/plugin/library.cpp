@@ -4,7 +4,6 @@
 #define BOOST_DLL_USE_STD_FS
 #include <dlfcn.h>
 #include <fcntl.h>
-#include <sha2.h>
 #include <sys/mman.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -24,9 +23,9 @@
 #include "base/file_stamp.hpp"
 #include "base/input_file.hpp"
 #include "base/own_pages.hpp"
+#include "base/sha256.hpp"
 #include "base/text.hpp"
 #include "exported_symbols.hpp"
-#include "lock.hpp"
 #include "table_checks.hpp"
 #include "watched_call.hpp"
 
@@ -232,21 +231,6 @@ std::string library_sha256(const Manifest& manifest) {
   const std::string found = sha256(manifest.locked ? sealed_copy(manifest, file) : file);
   require_version(manifest);
   return hashes.put(version, found);
-}
-
-std::string sha256(const fs::path& file) {
-  char digest[SHA256_DIGEST_STRING_LENGTH] = {};
-  static_cast<void>(InputFile(file));
-  errno = 0;
-  if (SHA256File(file.c_str(), digest) == nullptr) {
-    throw Error(Cause::input_output, Place{file.string()}, std::string("cannot be read: ") + std::strerror(errno));
-  }
-  return digest;
-}
-
-std::string sha256_of(std::string_view text) {
-  char digest[SHA256_DIGEST_STRING_LENGTH] = {};
-  return SHA256Data(reinterpret_cast<const std::uint8_t*>(text.data()), text.size(), digest);
 }
 
 }  // namespace rouleau::plugin

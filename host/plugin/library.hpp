@@ -34,9 +34,4 @@ const rouleau_model& model_of(rouleau_open_function open, const Manifest& manife
 /// SHA-256 of a manifest's library as it was when the manifest was read. Throws Error(plugin_refused) for a library that
 /// open_model would not look into, or that has changed since and was not asked for before.
 std::string library_sha256(const Manifest& manifest);
-/// SHA-256 of a file, lower-case hexadecimal. Throws Error(input_output).
-std::string sha256(const std::filesystem::path& file);
-/// SHA-256 of a text, in the same form.
-std::string sha256_of(std::string_view text);
-
 }  // namespace rouleau::plugin

@@ -4,6 +4,7 @@
 #include <set>
 #include <tuple>
 
+#include "base/sha256.hpp"
 #include "base/text.hpp"
 #include "embedded_schemas.hpp"
 #include "json/document.hpp"

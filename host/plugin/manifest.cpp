@@ -1,55 +1,47 @@
 #include "manifest.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cmath>
-#include <cstring>
-#include <limits>
-
-#include "base/input_file.hpp"
-#include "embedded_schemas.hpp"
-#include "json/document.hpp"
-#include "json/schema.hpp"
-#include "library.hpp"
-#include "manifest_reader.hpp"
+#include <array>
 
 namespace rouleau::plugin {
 
 namespace {
 
-namespace fs = std::filesystem;
-using Json = nlohmann::json;
+constexpr units::Dimension per_length{{1, 0, -2}}, energy{{1, 2, -2}}, length{{0, 1, 0}}, surface_viscosity{{1, 0, -1}};
 
-std::string text_of(const Json& object, const char* key) { return object.value(key, std::string()); }
-
-std::vector<std::string> words_of(const Json& root, const char* key) {
-  return root.value(key, std::vector<std::string>());
-}
-
-/// The author's own keys never reach the rest of the host.
-Json without_own_keys(const Json& value) {
-  if (!value.is_object()) return value;
-  Json kept = Json::object();
-  for (const auto& [key, member] : value.items()) {
-    if (!key.starts_with("x-")) kept[key] = member;
-  }
-  return kept;
-}
-
-std::vector<int> dimensions_of(const std::vector<std::string>& lattices) {
-  std::vector<int> dimensions;
-  dimensions.reserve(lattices.size());
-  for (const std::string& lattice : lattices) dimensions.push_back(lattice == "D3Q19" ? 3 : 2);
-  return dimensions;
-}
-
-ModelKind kind_of(const std::string& word) {
-  if (word == "collision") return ModelKind::collision;
-  if (word == "membrane") return ModelKind::membrane;
-  return ModelKind::interaction;
-}
+/// In the order of the enumeration.
+constexpr std::array roles{
+    RoleFacts{Role::shear_modulus, "shear_modulus", ModelKind::membrane, per_length, "N/m"},
+    RoleFacts{Role::stretching_modulus, "stretching_modulus", ModelKind::membrane, per_length, "N/m"},
+    RoleFacts{Role::area_modulus, "area_modulus", ModelKind::membrane, per_length, "N/m"},
+    RoleFacts{Role::bending_modulus, "bending_modulus", ModelKind::membrane, energy, "J"},
+    RoleFacts{Role::membrane_viscosity, "membrane_viscosity", ModelKind::membrane, surface_viscosity, "N s/m"},
+    RoleFacts{Role::depth, "depth", ModelKind::interaction, per_length, "J/m2"},
+    RoleFacts{Role::zero_force_distance, "zero_force_distance", ModelKind::interaction, length, "m"},
+    RoleFacts{Role::cutoff, "cutoff", ModelKind::interaction, length, "m"},
+};
 
 }  // namespace
+
+const char* to_string(ModelKind kind) {
+  switch (kind) {
+    case ModelKind::collision:
+      return "collision";
+    case ModelKind::membrane:
+      return "membrane";
+    case ModelKind::interaction:
+      return "interaction";
+  }
+  return "unknown";
+}
+
+const RoleFacts& facts_of(Role role) { return roles.at(static_cast<std::size_t>(role)); }
+
+std::optional<Role> role_named(const std::string& name) {
+  const auto found =
+      std::find_if(roles.begin(), roles.end(), [&](const RoleFacts& facts) { return facts.name == name; });
+  return found == roles.end() ? std::nullopt : std::optional(found->role);
+}
 
 bool Manifest::needs_input(const std::string& name) const {
   return std::find(needs.begin(), needs.end(), name) != needs.end();
@@ -80,66 +72,6 @@ std::optional<std::size_t> Manifest::parameter_with(Role role) const {
     if (parameters[i].role == role) return i;
   }
   return std::nullopt;
-}
-
-json::Document read_manifest_document(const fs::path& file) {
-  try {
-    // Folders of plugins may hold data as well; reading all of it to find out that it is no manifest would take for ever.
-    return json::Document::parse(read_input(file, 1U << 20U), file.string(), Cause::plugin_refused);
-  } catch (const Error& error) {
-    throw Error(Cause::plugin_refused, error.place(), error.problem(), error.remedy());
-  }
-}
-
-const Json& manifest_schema() {
-  static const auto schema = Json::parse(manifest_schema_text);
-  return schema;
-}
-
-Manifest read_manifest(const json::Document& document, const fs::path& file, const units::Units& units) {
-  json::validate(document, manifest_schema(), Cause::plugin_refused);
-  const Json& root = document.root();
-
-  Manifest manifest;
-  manifest.file = file;
-  manifest.sha256 = sha256_of(document.text());
-  manifest.library = fs::absolute(file).parent_path() / text_of(root, "library");
-  manifest.library_stamp = stamp_of(manifest.library);
-  manifest.kind = kind_of(text_of(root, "kind"));
-  manifest.id = text_of(root, "id");
-  manifest.version = text_of(root, "version");
-  manifest.title = text_of(root, "title");
-  manifest.reference = text_of(root, "reference");
-  manifest.author = text_of(root, "author");
-  manifest.license = text_of(root, "license");
-  manifest.parameters = read_parameters(document, units);
-  manifest.needs = words_of(root, "needs");
-  manifest.gives = words_of(root, "gives");
-  manifest.state = read_state(document, units);
-  manifest.inactive_when = without_own_keys(root.value("inactive_when", Json()));
-  manifest.stands_for = without_own_keys(root.value("stands_for", Json()));
-  manifest.claims = without_own_keys(root.value("claims", Json::object()));
-  manifest.checks = root.value("checks", Json::array());
-  // A potential is an energy per area, whatever the dimension, unless it wants to know in which direction surfaces slide;
-  // older manifests do not say so.
-  const bool of_both = manifest.kind == ModelKind::interaction && !manifest.needs_input("tangential_velocity");
-  manifest.dimensions = root.value("dimensions", of_both ? std::vector{2, 3} : manifest.dimensions);
-  if (root.contains("lattices")) manifest.dimensions = dimensions_of(words_of(root, "lattices"));
-  if (root.contains("in_3d")) {
-    const Json& surface = root["in_3d"];
-    manifest.in_3d = {words_of(surface, "needs"), words_of(surface, "gives"), surface.value("checks", Json::array())};
-  }
-  check_roles(document, manifest);
-  check_dimensions(document, manifest);
-  check_quantities(document, manifest.in(manifest.dimension()), "");
-  if (manifest.in_3d) check_quantities(document, manifest.in(3), "/in_3d");
-  check_parameter_values(document, manifest, "inactive_when", manifest.inactive_when, units);
-  check_parameter_values(document, manifest, "stands_for", manifest.stands_for, units);
-  return manifest;
-}
-
-Manifest read_manifest(const fs::path& file, const units::Units& units) {
-  return read_manifest(read_manifest_document(file), file, units);
 }
 
 }  // namespace rouleau::plugin

@@ -9,16 +9,39 @@
 
 #include "base/file_stamp.hpp"
 #include "json/json.hpp"
-#include "role.hpp"
 #include "units/units.hpp"
 
-namespace rouleau::json {
-class Document;
-}  // namespace rouleau::json
 namespace rouleau::plugin {
 
 enum class ModelKind { collision = 1, membrane = 2, interaction = 3 };
 const char* to_string(ModelKind kind);
+
+// What a model's parameter is in the field's terms, whatever its author called it: "role" in a manifest.
+
+/// The host knows parameters by their roles only, never by their names.
+enum class Role {
+  shear_modulus,        ///< membrane: elastic resistance to shear in its plane
+  stretching_modulus,   ///< membrane: d tension / d stretch at rest
+  area_modulus,         ///< membrane: resistance to change of its own area
+  bending_modulus,      ///< membrane: d moment / d curvature
+  membrane_viscosity,   ///< membrane: d tension / d stretch rate at rest
+  depth,                ///< interaction: of the well, energy per area
+  zero_force_distance,  ///< interaction: where attraction turns into repulsion
+  cutoff,               ///< interaction: no force from there on
+};
+
+/// What a parameter must be to have a role.
+struct RoleFacts {
+  Role role;
+  const char* name;  ///< in manifests; the enum of the manifest's schema holds the same names
+  ModelKind kind;
+  units::Dimension dimension;
+  const char* unit;  ///< one of that dimension, such as messages name it
+};
+
+const RoleFacts& facts_of(Role role);
+/// Nothing for a word that is no role.
+std::optional<Role> role_named(const std::string& name);
 
 /// One parameter of a model. Numbers are in coherent SI units here; `unit` is what the manifest and messages use.
 struct Parameter {
@@ -83,14 +106,5 @@ struct Manifest {
   /// Place of the parameter with this role in `parameters`; nothing when none has it.
   [[nodiscard]] std::optional<std::size_t> parameter_with(Role role) const;
 };
-
-/// The schema of a manifest.
-const nlohmann::json& manifest_schema();
-/// Text of a manifest as JSON with places. Throws Error(plugin_refused) when it cannot be read or is no JSON.
-json::Document read_manifest_document(const std::filesystem::path& file);
-/// Validates a manifest. Throws Error(plugin_refused) with place, problem and remedy.
-Manifest read_manifest(const json::Document& document, const std::filesystem::path& file, const units::Units& units);
-/// Reads and validates a manifest. Throws Error(plugin_refused) with place, problem and remedy.
-Manifest read_manifest(const std::filesystem::path& file, const units::Units& units);
 
 }  // namespace rouleau::plugin

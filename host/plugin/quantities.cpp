@@ -63,18 +63,6 @@ const Quantity& quantity_of(const Manifest& manifest, const std::string& name) {
 
 }  // namespace
 
-const char* to_string(ModelKind kind) {
-  switch (kind) {
-    case ModelKind::collision:
-      return "collision";
-    case ModelKind::membrane:
-      return "membrane";
-    case ModelKind::interaction:
-      return "interaction";
-  }
-  return "unknown";
-}
-
 const char* to_string(MembraneElement element) {
   switch (element) {
     case MembraneElement::segment:

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 
 namespace rouleau::plugin {

@@ -10,13 +10,12 @@
 #include <rouleau/dispatch.hpp>
 #include <thread>
 
+#include "base/sha256.hpp"
 #include "files/run_directory.hpp"
 #include "json/document.hpp"
 #include "plugin/library.hpp"
 
 namespace rouleau::run {
-
-std::string program_version() { return ROULEAU_VERSION; }
 
 Machine this_machine() {
   std::string model = "unknown processor";
@@ -63,7 +62,7 @@ Summary describe(const plan::Plan& plan, const plan::PlanReport& report, int thr
   Summary s;
   s.title = scene.title;
   s.scene_file = scene.document->file();
-  s.scene_sha256 = plugin::sha256_of(files::scene_text(*scene.document));
+  s.scene_sha256 = sha256_of(files::scene_text(*scene.document));
   s.git = program_version();
   s.machine = machine_description();
   s.started = present_time();

@@ -4,11 +4,10 @@
 #include <string>
 
 #include "summary.hpp"
+#include "version.hpp"
 
 namespace rouleau::run {
 
-/// Version and, in a checkout, commit that the program was built from.
-std::string program_version();
 struct Machine {
   std::string processor;  ///< model
   unsigned processors;    ///< that the program may use

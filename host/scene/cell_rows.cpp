@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "scene_reader.hpp"
 

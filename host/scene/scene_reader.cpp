@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "json/json_pointer.hpp"
 #include "json/shown.hpp"

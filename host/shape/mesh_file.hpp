@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "surface.hpp"
+#include "triangle_surface.hpp"
 
 namespace rouleau::shape {
 

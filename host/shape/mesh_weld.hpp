@@ -1,7 +1,7 @@
 // Nodes at the same place.
 #pragma once
 
-#include "surface.hpp"
+#include "triangle_surface.hpp"
 
 namespace rouleau::shape {
 

@@ -10,7 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "surface.hpp"
+#include "triangle_surface.hpp"
 
 namespace rouleau::shape {
 

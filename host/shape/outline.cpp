@@ -1,13 +1,10 @@
 #include "outline.hpp"
 
 #include <Eigen/Geometry>
-
 #include <cmath>
 #include <numbers>
-
 #include <stdexcept>
 #include <utility>
-#include "mesh_file.hpp"
 
 namespace rouleau::shape {
 

@@ -1,19 +1,11 @@
 // Closed surfaces of triangles for the shapes of cells in three dimensions.
 #pragma once
 
-#include <array>
-#include <vector>
-
 #include "core/surface/surfaces.hpp"
 #include "scene/scene.hpp"
+#include "triangle_surface.hpp"
 
 namespace rouleau::shape {
-
-/// Nodes around the origin, and triangles counter-clockwise seen from outside.
-struct TriangleSurface {
-  std::vector<core::Vec<3>> nodes;
-  std::vector<std::array<int, 3>> triangles;
-};
 
 /// Each of an icosahedron's 20 triangles in n^2 parts, on the sphere of radius 1: 20 n^2 triangles, 10 n^2 + 2 nodes. Edges
 /// differ by a quarter at most.

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "json/json.hpp"
-#include "limits_run.hpp"
+#include "limits_state.hpp"
 
 namespace rouleau::stability {
 

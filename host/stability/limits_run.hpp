@@ -3,47 +3,16 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "json/json.hpp"
-#include "limits_document.hpp"
-#include "trial/campaign.hpp"
+#include "limits_state.hpp"
 
 namespace rouleau::stability {
-
-struct LimitsTrial {
-  double value;
-  Judgement judgement;
-};
-
-/// What was found for one combination of methods.
-struct CombinationResult {
-  trial::Point point;
-  EdgeSearch search;
-  std::vector<LimitsTrial> trials;   ///< in the order of the search
-  std::filesystem::path scene_file;  ///< of one of them
-};
 
 /// What a run came to, and where it lies.
 struct JudgedRun {
   Judgement judgement;
   std::filesystem::path directory;
-};
-
-struct CaseResult {
-  const ExtremeCase* extreme;
-  Judgement judgement;
-  std::string verdict;  ///< "right answer", "stopped with a reason", "WRONG"
-  std::string outcome;  ///< one sentence
-  bool as_expected = false;
-};
-
-struct LimitsState {
-  const LimitsFile* limits;
-  std::vector<CombinationResult> combinations;
-  std::vector<CaseResult> cases;
-  std::string started, finished;  ///< finished: empty while it runs
 };
 
 class LimitsRun {

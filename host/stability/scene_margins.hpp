@@ -2,7 +2,7 @@
 #pragma once
 
 #include "json/json.hpp"
-#include "limits_run.hpp"
+#include "limits_state.hpp"
 
 namespace rouleau::stability {
 

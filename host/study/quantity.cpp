@@ -4,6 +4,7 @@
 #include <array>
 #include <numbers>
 
+#include "base/synonyms.hpp"
 #include "json/document.hpp"
 #include "observe/observables.hpp"
 #include "study_reader.hpp"

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "base/synonyms.hpp"
 #include "json/document.hpp"
 #include "json/shown.hpp"
 #include "study_reader.hpp"

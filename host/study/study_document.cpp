@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "embedded_schemas.hpp"
 #include "json/json_pointer.hpp"

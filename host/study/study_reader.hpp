@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "json/json_pointer.hpp"
 #include "json/schema.hpp"

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/input_file.hpp"
+#include "base/sha256.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/library.hpp"
 #include "plugin/lock.hpp"
@@ -38,7 +39,7 @@ std::vector<fs::path> scene_plugin_dirs(const Json& scene, const fs::path& scene
 }  // namespace
 
 std::string program_sha256() {
-  static const std::string hash = plugin::sha256("/proc/self/exe");
+  static const std::string hash = sha256("/proc/self/exe");
   return hash;
 }
 
@@ -74,11 +75,11 @@ std::string fingerprint(const Json& scene, const fs::path& scene_file, const std
     const fs::path file = fs::absolute(scene_file).parent_path() / name;
     std::error_code ignored;
     if (fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) <= largest_named)
-      all["files"].push_back(plugin::sha256(file));
+      all["files"].push_back(sha256(file));
   }
   const fs::path lock = plugin::lock_beside(scene_file);
-  if (fs::exists(lock)) all["lock"] = plugin::sha256(lock);
-  return plugin::sha256_of(all.dump(-1, ' ', false, Json::error_handler_t::replace));
+  if (fs::exists(lock)) all["lock"] = sha256(lock);
+  return sha256_of(all.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 std::string directory_name(const std::string& fingerprint) { return fingerprint.substr(0, 16); }

@@ -4,10 +4,10 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "base/sha256.hpp"
 #include "files/file.hpp"
 #include "files/run_directory.hpp"
 #include "fingerprint.hpp"
-#include "plugin/library.hpp"
 
 namespace rouleau::trial {
 
@@ -51,8 +51,8 @@ std::string tables_sha256(const fs::path& directory) {
     if (entry.path().extension() == ".csv") tables.insert(entry.path());
   }
   std::string all;
-  for (const fs::path& table : tables) all += table.filename().string() + ' ' + plugin::sha256(table) + '\n';
-  return plugin::sha256_of(all);
+  for (const fs::path& table : tables) all += table.filename().string() + ' ' + sha256(table) + '\n';
+  return sha256_of(all);
 }
 
 void add_run(PointRecord& record, const TrialResult& result, const fs::path& directory) {

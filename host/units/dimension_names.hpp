@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "units.hpp"
+#include "dimension.hpp"
 
 namespace rouleau::units {
 

@@ -1,19 +1,14 @@
 // Quantities with units, by UDUNITS-2 plus the few symbols of this field that it lacks (P, cP, dyn, deg, Da, kDa).
 #pragma once
 
-#include <array>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
-namespace rouleau::units {
+#include "dimension.hpp"
 
-/// Exponents of kg, m, s, K, mol and A. An angle has none.
-struct Dimension {
-  std::array<int, 6> exponent{};
-  friend bool operator==(const Dimension&, const Dimension&) = default;
-};
+namespace rouleau::units {
 
 /// Thrown for text that is no quantity, or a quantity of the wrong dimension; what() is one sentence for the user.
 class UnitError : public std::runtime_error {

@@ -7,6 +7,7 @@
 #include "json/document.hpp"
 #include "json/schema.hpp"
 #include "plugin/manifest.hpp"
+#include "plugin/manifest_reader.hpp"
 
 using namespace rouleau::json;
 using namespace rouleau::plugin;

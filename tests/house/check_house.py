@@ -27,8 +27,7 @@ MOST_COLUMNS = 120
 MOST_LINES_OF_FUNCTION = 80
 MOST_LINES_OF_UNIT = 450
 # What is still beyond: these numbers may fall, and leave the list; none may rise.
-UNITS_IN_CIRCLES = {"base": 2, "json": 2, "units": 2, "scene": 2, "plugin": 9, "shape": 5, "core/coupling": 2, "plan": 8,
-                    "command": 3, "stability": 3}
+UNITS_IN_CIRCLES = {"scene": 2, "plan": 2}
 LONG_LINES = 509
 LONG_FUNCTIONS = {"accuracy/companions": 103, "core/fluid/energetics": 130, "observe/observables": 183,
                   "plan/plan_report": 83, "plan/stability_limits": 236, "report/report_data": 105}

@@ -25,6 +25,7 @@
 #include "conform/isolation/worlds.hpp"
 #include "conform/report_line.hpp"
 #include "conform/subject.hpp"
+#include "plugin/manifest_reader.hpp"
 
 namespace {
 

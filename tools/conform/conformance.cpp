@@ -8,6 +8,7 @@
 #include "base/process.hpp"
 #include "base/text.hpp"
 #include "json/document.hpp"
+#include "plugin/manifest_reader.hpp"
 #include "report_line.hpp"
 
 namespace rouleau::conform {

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "base/error.hpp"
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "command/process/command_line.hpp"
 #include "command/process/program.hpp"

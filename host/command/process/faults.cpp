@@ -17,7 +17,7 @@
 
 #include "base/foreign_call.hpp"
 #include "base/signal_stack.hpp"
-#include "program.hpp"
+#include "trial/exit_code.hpp"
 
 namespace rouleau::command {
 
@@ -70,13 +70,13 @@ constexpr const char* kept = "\n  what is on disk is whole, and a run can go on 
 [[noreturn]] void accuse(const ForeignCall& call, const char* deed) {
   say({"rouleau: the plugin \"", call.model(), "\" ", deed, " in its function ", call.function(), kept,
        "  rouleau conform MANIFEST looks for the fault; report it to the plugin's author\n"});
-  end_process(exit_code::plugin_refused);
+  end_process(trial::exit_code::plugin_refused);
 }
 
 /// Libraries crash, stop or leave the program where they were refused memory, and errno is all that says so.
 [[noreturn]] void regret_lack_of_memory() {
   say({"rouleau: there is not enough memory", kept});
-  end_process(exit_code::input_output);
+  end_process(trial::exit_code::input_output);
 }
 
 /// A library whose memory was refused long ago may crash as well as a fault of the program. Where the system keeps
@@ -86,7 +86,7 @@ void regret_crash() {
        "  please report it\n"});
   rlimit kept_memory{};
   if (getrlimit(RLIMIT_CORE, &kept_memory) == 0 && kept_memory.rlim_cur > 0) return;
-  end_process(exit_code::input_output);
+  end_process(trial::exit_code::input_output);
 }
 
 void on_fatal_signal(int signal, siginfo_t* info, void*) {
@@ -110,7 +110,7 @@ void on_end() {
   if (at_its_end) return;
   if (errno == ENOMEM) regret_lack_of_memory();
   say({"rouleau: a library has ended the program", kept});
-  end_process(exit_code::input_output);
+  end_process(trial::exit_code::input_output);
 }
 
 std::terminate_handler terminate_before;

@@ -12,6 +12,7 @@
 
 #include "base/faults.hpp"
 #include "base/foreign_call.hpp"
+#include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "crew.hpp"
 #include "json/json.hpp"

@@ -2,6 +2,7 @@
 #include "plugin/manifest.hpp"
 
 #include "json/document.hpp"
+#include "plugin/manifest_reader.hpp"
 #include "plugin/quantities.hpp"
 #include "target.hpp"
 

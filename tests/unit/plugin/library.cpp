@@ -1,10 +1,12 @@
 // The opening of libraries: what is checked before loading, the loader's own words, and the tables inside.
 #include "plugin/library.hpp"
+#include "base/sha256.hpp"
 
 #include <sys/stat.h>
 
 #include <cstdlib>
 
+#include "plugin/manifest_reader.hpp"
 #include "plugin/model.hpp"
 #include "plugin_folder.hpp"
 

@@ -3,6 +3,7 @@
 
 #include "json/document.hpp"
 #include "json/schema.hpp"
+#include "plugin/manifest_reader.hpp"
 #include "plugin/quantities.hpp"
 #include "plugin_folder.hpp"
 

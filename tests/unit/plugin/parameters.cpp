@@ -1,5 +1,6 @@
 // A scene's parameters against a manifest: conversion, defaults, limits, and messages that say what to write instead.
 #include "plugin/parameters.hpp"
+#include "plugin/manifest_reader.hpp"
 
 #include "json/document.hpp"
 #include "plugin_folder.hpp"

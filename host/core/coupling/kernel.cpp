@@ -1,7 +1,6 @@
-#include "kernel_kind.hpp"
+#include "kernel.hpp"
 
 #include "core/fluid/field.hpp"
-#include "kernel.hpp"
 
 namespace rouleau::core {
 
