@@ -19,6 +19,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 FEW, MORE = 50, 250  # steps; a check falls between them (every 200 steps), no output does
+FEW_IN_SPACE, MORE_IN_SPACE = 20, 60  # without a check, which costs the same in both dimensions: a step takes ten times as long
 LIMIT = 0.01
 
 
@@ -38,8 +39,8 @@ def instructions(command: list, apart: tuple = ()) -> int:
 class Counter:
     """Counts on all cores, which counts do not mind; what its methods return gives the instructions per step when called."""
 
-    def __init__(self, build: Path, folder: Path, pool: concurrent.futures.Executor):
-        self.build, self.folder, self.pool = build, folder, pool
+    def __init__(self, build: Path, folder: Path, pool: concurrent.futures.Executor, few: int = FEW, more: int = MORE):
+        self.build, self.folder, self.pool, self.few, self.more = build, folder, pool, few, more
         folder.mkdir(exist_ok=True)
 
     def scene(self, name: str, scene: dict, apart: tuple = ()) -> Callable[[], float]:
@@ -51,7 +52,7 @@ class Counter:
 
     def outputs(self, name: str) -> int:
         """How often the longer run of a scene wrote its cells."""
-        rows = (self.folder / f"{name}-{MORE}" / "cells.csv").read_text().splitlines()
+        rows = (self.folder / f"{name}-{self.more}" / "cells.csv").read_text().splitlines()
         header, data = rows[0].split(","), [row.split(",") for row in rows[1:] if not row.startswith("#")]
         return len({row[header.index("step")] for row in data})
 
@@ -60,8 +61,8 @@ class Counter:
             [self.build / "bin/rouleau-bench", "--kernel", name, "--steps", steps, *more]))
 
     def per_step(self, count: Callable[[int], int]) -> Callable[[], float]:
-        more, few = self.pool.submit(count, MORE), self.pool.submit(count, FEW)
-        return lambda: (more.result() - few.result()) / (MORE - FEW)
+        more, few = self.pool.submit(count, self.more), self.pool.submit(count, self.few)
+        return lambda: (more.result() - few.result()) / (self.more - self.few)
 
 
 def without(scene: dict, *keys: str) -> dict:
@@ -121,9 +122,10 @@ def main() -> int:
     failed = False
     with (tempfile.TemporaryDirectory() as folder,
           concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool):
-        for dimension, file, bare in ((2, "scenes/four-cells-shear.json", ()), (3, "limits/scenes/two-cells-3d.json", CUBE)):
+        for dimension, file, bare, steps in ((2, "scenes/four-cells-shear.json", (), (FEW, MORE)),
+                                             (3, "limits/scenes/two-cells-3d.json", CUBE, (FEW_IN_SPACE, MORE_IN_SPACE))):
             print(f"Instructions per step, {file} and what is left of it, AVX2, f64\n")
-            count = Counter(arguments.build.resolve(), Path(folder) / str(dimension), pool)
+            count = Counter(arguments.build.resolve(), Path(folder) / str(dimension), pool, *steps)
             failed |= not report(comparisons(count, json.loads((HERE.parent / file).read_text()), bare))
             if count.outputs("output") != 2:
                 raise SystemExit("idle_features: outputs came due while the idle scene was counted")

@@ -107,11 +107,7 @@ Errors compare(const Capsule& c, const Steady& s) {
   return e;
 }
 
-}  // namespace
-
-TEST_CASE("the capsule deforms, inclines, tank-treads and thickens the fluid as the boundary-integral solution",
-          "[capsule]") {
-  const Capsule c = GENERATE(Capsule{0.0125, 1}, Capsule{0.05, 1}, Capsule{0.1, 1}, Capsule{0.2, 1}, Capsule{0.05, 5});
+void compare_with_reference(const Capsule& c) {
   const Steady s = run_capsule(c);
   const Errors e = compare(c, s);
   // What the issue asks for; the reference is known to 1e-4.
@@ -120,6 +116,18 @@ TEST_CASE("the capsule deforms, inclines, tank-treads and thickens the fluid as 
   CHECK(std::abs(e.period) < 0.004);
   CHECK(std::abs(e.viscosity) < 0.007);
   CHECK(s.area_drift_per_strain < 1e-6);
+}
+
+}  // namespace
+
+TEST_CASE("the capsule deforms, inclines, tank-treads and thickens the fluid as the boundary-integral solution",
+          "[capsule]") {
+  compare_with_reference(GENERATE(Capsule{0.05, 1}, Capsule{0.05, 5}));
+}
+
+TEST_CASE("the capsule is as the boundary-integral solution at smaller and larger capillary numbers, too",
+          "[capsule][weekly]") {
+  compare_with_reference(GENERATE(Capsule{0.0125, 1}, Capsule{0.1, 1}, Capsule{0.2, 1}));
 }
 
 TEST_CASE("with the slip correction the capsule's deformation converges to second order", "[capsule]") {

@@ -53,19 +53,60 @@ std::vector<int> ranks_near(const core::Decomposition<D>& blocks, int rank) {
   return {near.begin(), near.end()};
 }
 
-/// Populations of a halo node that cross the border: as core/fluid/fluid.cpp has them.
 template <int D>
-int crossing(const core::Domain<D>& domain, const std::array<int, D>& node, const std::array<int, D>& out) {
-  int count = 0;
+double volume(const core::Box<D>& box) {
+  double product = 1;
+  for (int k = 0; k < D; ++k) product *= std::max(0, box.size(k));
+  return product;
+}
+
+/// Calls function(nodes, out, other) with the nodes that core::for_halo_nodes goes through, in boxes, each with the rank that
+/// owns them, one of those near.
+template <int D, class Function>
+void for_halo_boxes(const core::Decomposition<D>& blocks, int rank, const std::vector<int>& near, int below, int above,
+                    Function function) {
+  const core::Domain<D> domain = blocks.domain(rank);
+  const int sides = D == 2 ? 9 : 27;
+  for (int side = 0; side < sides; ++side) {
+    core::Box<D> nodes;
+    std::array<int, D> out, first, last;  // first, last: periods from the lattice to the images that the nodes are of
+    bool foreign = false;
+    for (int k = 0, rest = side; k < D; ++k, rest /= 3) {
+      out[k] = rest % 3 - 1;
+      const int begin = domain.block.begin[k], end = domain.block.end[k], size = domain.size[k];
+      nodes.begin[k] = out[k] < 0 ? begin - below : (out[k] == 0 ? begin : end);
+      nodes.end[k] = out[k] < 0 ? begin : (out[k] == 0 ? end : end + above);
+      first[k] = domain.periodic[k] ? (nodes.begin[k] + size * below) / size - below : 0;
+      last[k] = domain.periodic[k] ? (nodes.end[k] - 1 + size * below) / size - below : 0;
+      foreign = foreign || (out[k] != 0 && !domain.wraps(k));
+    }
+    for (std::array<int, D> period = first; foreign;) {
+      for (const int other : near) {
+        core::Box<D> owned = blocks.domain(other).block;
+        for (int k = 0; k < D; ++k)
+          owned.begin[k] += period[k] * domain.size[k], owned.end[k] += period[k] * domain.size[k];
+        if (owned.meets(nodes)) function(owned.common(nodes), out, other);
+      }
+      int k = 0;
+      for (; k < D && ++period[k] > last[k]; ++k) period[k] = first[k];
+      if (k == D) break;
+    }
+  }
+}
+
+/// Populations that cross the border to nodes of the halo that lie on one side of a block: as core/fluid/fluid.cpp has them.
+template <int D>
+double crossing(const core::Box<D>& block, const core::Box<D>& nodes, const std::array<int, D>& out) {
+  double count = 0;
   for (int q = 1; q < SetOf<D>::velocity_count; ++q) {
     bool leaves = true;
-    std::array<int, D> from = node;
+    core::Box<D> to = block;
     for (int k = 0; k < D; ++k) {
       const int c = SetOf<D>::velocity[q][k];
       leaves = leaves && (out[k] == 0 || c == out[k]);
-      from[k] -= c;
+      to.begin[k] += c, to.end[k] += c;
     }
-    if (leaves && domain.block.contains(from)) ++count;
+    if (leaves) count += volume(to.common(nodes));
   }
   return count;
 }
@@ -75,32 +116,29 @@ void add_halos(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
   const double number = plan.scene->numerics.precision == scene::Precision::f64 ? 8 : 4;
   const int above = core::stencil_above(kernel_named(plan.scene->numerics.kernel).kind);
   for (int rank = 0; rank < blocks.ranks(); ++rank) {
-    const core::Domain<D> domain = blocks.domain(rank);
+    const core::Box<D> block = blocks.domain(rank).block;
     const std::vector<int> near = ranks_near(blocks, rank);
-    const auto owner = [&](std::array<int, D> node) {
-      for (int k = 0; k < D; ++k) node[k] = domain.wrapped(k, node[k]);
-      return *std::find_if(near.begin(), near.end(), [&](int r) { return blocks.domain(r).block.contains(node); });
-    };
     const auto send = [&](double RankCost::*bytes, int from, int to, double count) {
       ranks[from].*bytes += count;
       ranks[to].received_bytes += count;
     };
     std::set<int> neighbours;
-    core::for_halo_nodes(domain, 1, 1, [&](const std::array<int, D>& node, const std::array<int, D>& out) {
-      const double bytes = crossing<D>(domain, node, out) * number;
-      const int other = owner(node);
+    const auto count_populations = [&](const core::Box<D>& nodes, const std::array<int, D>& out, int other) {
+      const double bytes = crossing<D>(block, nodes, out) * number;
       if (other != rank) neighbours.insert(other);
       send(&RankCost::population_bytes, rank, other, bytes / 2);  // home after odd steps,
       send(&RankCost::population_bytes, other, rank, bytes / 2);  // out after even ones
-    });
+    };
+    for_halo_boxes(blocks, rank, near, 1, 1, count_populations);
     ranks[rank].neighbours = static_cast<long>(neighbours.size());
     ranks[rank].messages = ranks[rank].neighbours;
     ranks[rank].waits = 1;
     if (!plan.has_cells) continue;
     ranks[rank].messages *= 2;
-    core::for_halo_nodes(domain, above - 1, above, [&](const std::array<int, D>& node, const std::array<int, D>&) {
-      send(&RankCost::velocity_bytes, owner(node), rank, D * number);
-    });
+    const auto count_velocities = [&](const core::Box<D>& nodes, const std::array<int, D>&, int other) {
+      send(&RankCost::velocity_bytes, other, rank, volume(nodes) * D * number);
+    };
+    for_halo_boxes(blocks, rank, near, above - 1, above, count_velocities);
   }
 }
 

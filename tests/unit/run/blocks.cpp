@@ -17,13 +17,13 @@ using namespace rouleau::test;
 
 namespace {
 
-/// Outputs every 7 steps, fields every 60, checks every 16; what is left open is as in the scene's file.
+/// Outputs every 7 steps, fields every 30, checks every 16; what is left open is as in the scene's file.
 struct Planned {
   explicit Planned(const Case& c)
       : scene(plan::read_scene(c.file, c.overrides)), plan(plan::make_plan(scene, catalog())) {
     const double step = plan.stages.front().units.time;
     scene.output.cells = {.strain = {}, .seconds = 7 * step};
-    scene.output.fields = {.strain = {}, .seconds = 60 * step};
+    scene.output.fields = {.strain = {}, .seconds = 30 * step};
     scene.output.quantities = {"velocity", "density", "viscosity", "vorticity"};
     scene.checks.every_steps = 16;
     report = plan::make_report(plan);
@@ -185,13 +185,13 @@ TEST_CASE("a run cut into any blocks writes the same directory", "[whole-runs]")
   std::vector<Case> cases = scenes_to_cut();
   cases.push_back(two_stages);
   cases.push_back({"no cells", four_cells, {driven, "/output={}", "/cells=[]", "/interactions=[]"}});
-  for (const Case& c : cases) compare_cuts<2>(c, block_steps(75));
+  for (const Case& c : cases) compare_cuts<2>(c, block_steps(36));
 }
 
 TEST_CASE("a run in three dimensions cut into any blocks writes the same directory", "[whole-runs]") {
   for (const Case& c : scenes_in_space()) {
-    compare_cuts<3>(c, block_steps(20));
-    compare_continued<3>(c, block_steps(20));
+    compare_cuts<3>(c, block_steps(12));
+    compare_continued<3>(c, block_steps(12));
   }
 }
 

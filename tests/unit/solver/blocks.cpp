@@ -274,7 +274,7 @@ void compare_cuts(const Case& c, long steps, long look = 1000, std::vector<Cut<S
 }  // namespace
 
 TEST_CASE("any blocks give the same bits as the whole lattice") {
-  for (const Case& c : scenes_to_cut()) compare_cuts<D2Q9>(c, block_steps(40));
+  for (const Case& c : scenes_to_cut()) compare_cuts<D2Q9>(c, block_steps(20));
 }
 
 TEST_CASE("any blocks give the same bits while cells come and go") {
@@ -289,5 +289,5 @@ TEST_CASE("any blocks give the same bits while cells come and go in three dimens
 }
 
 TEST_CASE("any blocks give the same bits as the whole lattice in three dimensions") {
-  for (const Case& c : scenes_in_space()) compare_cuts<D3Q19>(c, block_steps(30));
+  for (const Case& c : scenes_in_space()) compare_cuts<D3Q19>(c, block_steps(12));
 }
