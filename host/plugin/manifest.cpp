@@ -7,7 +7,8 @@ namespace rouleau::plugin {
 
 namespace {
 
-constexpr units::Dimension per_length{{1, 0, -2}}, energy{{1, 2, -2}}, length{{0, 1, 0}}, surface_viscosity{{1, 0, -1}};
+constexpr units::Dimension per_length{{1, 0, -2}}, energy{{1, 2, -2}}, distance{{0, 1, 0}},
+    surface_viscosity{{1, 0, -1}};
 
 /// In the order of the enumeration.
 constexpr std::array roles{
@@ -17,8 +18,8 @@ constexpr std::array roles{
     RoleFacts{Role::bending_modulus, "bending_modulus", ModelKind::membrane, energy, "J"},
     RoleFacts{Role::membrane_viscosity, "membrane_viscosity", ModelKind::membrane, surface_viscosity, "N s/m"},
     RoleFacts{Role::depth, "depth", ModelKind::interaction, per_length, "J/m2"},
-    RoleFacts{Role::zero_force_distance, "zero_force_distance", ModelKind::interaction, length, "m"},
-    RoleFacts{Role::cutoff, "cutoff", ModelKind::interaction, length, "m"},
+    RoleFacts{Role::zero_force_distance, "zero_force_distance", ModelKind::interaction, distance, "m"},
+    RoleFacts{Role::cutoff, "cutoff", ModelKind::interaction, distance, "m"},
 };
 
 }  // namespace

@@ -14,7 +14,7 @@ LEFT_OUT = [
     (r"rouleau limits (limits|tests/stability)/", "tries hundreds of runs; tests/limits runs the command on small files, and reads these"),
     (r"scripts/(package|check-packages)\b", "minutes; tests/packages looks into packages of the build that is tested"),
     (r"scripts/release\b", "commits and tags; tests/docs/check_release.py runs it in a repository of its own"),
-    (r"scripts/fuzz\b", "builds a preset of its own and searches for minutes; scripts/test --full runs it"),
+    (r"scripts/fuzz\b", "builds a preset of its own and searches for minutes; scripts/test --weekly runs it"),
     (r"rouleau plugins --(install|index)\b", "wants a plugin that is not installed yet; run by tests/commands/check_trust.py"),
     (r"cmake --(preset|build)\b|ctest\b", "the build and the tests that this one is part of"),
     (r"cmake --install\b", "run by tests/sdk/check_install.py and check_tutorial.py"),
