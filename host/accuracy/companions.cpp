@@ -33,22 +33,23 @@ constexpr double outputs_of_tables = 0.2;  ///< what they cost over those of a r
 
 constexpr double to_the_coarsest = 1.25;  ///< spacing of the companion for the order over that for the lattice
 constexpr double least_to_the_coarsest = 1.15, most_to_the_coarsest = 1.4;
-/// Half the density is nearer to the truth. Between its companion and the one before only the density's error is to change: the
-/// lattice's fluid gives way to pressures as much as before, (tau - 1/2)^2 times the density, for cells beside the middle drift by
-/// that, and stiff ones deform too much. The same step would double it and hide the density's error; the same tau would halve it,
-/// and show what a coarse lattice has and the run has not. Where this wants a relaxation time beyond this one, whose own error
-/// is large, it is twice the density. In the plain scheme slip and leak change with tau, and it keeps that instead.
+/// Half the density is nearer to the truth. Between its companion and the one before only the density's error is to
+/// change: the lattice's fluid gives way to pressures as much as before, (tau - 1/2)^2 times the density, for cells
+/// beside the middle drift by that, and stiff ones deform too much. The same step would double it and hide the
+/// density's error; the same tau would halve it, and show what a coarse lattice has and the run has not. Where this
+/// wants a relaxation time beyond this one, whose own error is large, it is twice the density. In the plain scheme slip
+/// and leak change with tau, and it keeps that instead.
 constexpr double light = 0.5, dense = 2, largest_tau = 3;
 /// A start that makes a stage late by less than this share of its strain changes in proportion to the density, and the
 /// companion for inertia shows it.
 constexpr double slight_start = 0.1;
 /// Checks end a run before it writes garbage; a companion's coarse lattice comes nearer to them, and how wrong it is is
-/// what is asked. What leaks through a membrane grows faster than the square of the spacing, and with the strain: a capsule on
-/// 64, 44 and 36 rows would have lost 1.1, 2.7 and 4.4 % of its area within a strain of 40.
+/// what is asked. What leaks through a membrane grows faster than the square of the spacing, and with the strain: a
+/// capsule on 64, 44 and 36 rows would have lost 1.1, 2.7 and 4.4 % of its area within a strain of 40.
 constexpr double wider_mach = 4, wider_area = 20;
 
-/// Outputs of a run that reports moments, beyond which companions have `fewer` times fewer of them: between theirs moments
-/// are known well enough (Quantity::uncertainty).
+/// Outputs of a run that reports moments, beyond which companions have `fewer` times fewer of them: between theirs
+/// moments are known well enough (Quantity::uncertainty).
 constexpr long many_outputs = 200, fewer = 4;
 
 /// Where moments are reported a companion goes on beyond the scene by this share of its last stage.
@@ -80,8 +81,8 @@ using scene::LatticeSize;
 
 std::string in_words(const LatticeSize& size) { return scene::by_axes(size) + " nodes"; }
 
-/// What small lattices cost beside their nodes, s: each step; each row, and once more if its nodes do not fill registers. Measured in
-/// two dimensions.
+/// What small lattices cost beside their nodes, s: each step; each row, and once more if its nodes do not fill
+/// registers. Measured in two dimensions.
 constexpr double step_s = 1.5e-6, row_s = 45e-9, ragged_row_s = 60e-9;
 constexpr int full_registers = 8;
 

@@ -29,8 +29,8 @@ struct Companion {
 
 struct Companions {
   std::vector<Companion> runs;  ///< the one for the lattice first; what a scene does not need is left out
-  /// Spacing of the companion for the lattice over the run's; with a smaller relaxation time, on which the lattice's error
-  /// depends, as if all of its error came from the spacing.
+  /// Spacing of the companion for the lattice over the run's; with a smaller relaxation time, on which the lattice's
+  /// error depends, as if all of its error came from the spacing.
   double refinement = 1;
   double coarsest = 1;        ///< the same of the companion for the order
   double order = 2;           ///< at which the lattice's error falls in the end
@@ -52,8 +52,8 @@ struct RunCost {
 /// all of them are expected to cost a third of the run, by plan::step_cost, less what starting them and their outputs
 /// take, and one that is 1.25 times coarser again. The start and the density are changed on the coarser one; on the
 /// finer where the run reports moments, for a coarse cell may come too late to what the run's has reached: for the same
-/// reason companions then go on beyond the end of the scene. `most_compressed`: where the fluid of a coarser lattice would
-/// give way to the shear by a larger share, companions take shorter steps at a smaller relaxation time.
+/// reason companions then go on beyond the end of the scene. `most_compressed`: where the fluid of a coarser lattice
+/// would give way to the shear by a larger share, companions take shorter steps at a smaller relaxation time.
 Companions choose_companions(const scene::Scene& scene, const RunCost& cost, double most_compressed = INFINITY);
 
 }  // namespace rouleau::accuracy

@@ -31,8 +31,8 @@ struct Values {
   std::vector<double> companions;
 };
 
-/// Early events err as the Reynolds number to the power 0.7 (docs/accuracy.md, passage of 45 deg), so that what is added
-/// with the density shows less than in proportion; what is taken away with it shows more.
+/// Early events err as the Reynolds number to the power 0.7 (docs/accuracy.md, passage of 45 deg), so that what is
+/// added with the density shows less than in proportion; what is taken away with it shows more.
 constexpr double least_power_of_density = 0.7;
 
 /// Change of the error between a companion of this relative density and the run, over the run's error.

@@ -37,9 +37,9 @@ struct LatticeShare {
   double doubt = 0;  ///< of it, not negative
 };
 /// `coarse` and `coarser`: values on lattices `r` and `s` times as coarse as that of `value`; s = 1: there is no second
-/// one. The error is a h^p + b h^2p with both, kept between what b h^2p alone gives and twice what c h^p gives. With one of
-/// them, or where the two differences have no common trend, it is c h^q, q the order that was measured with other cells of
-/// the kind, and the doubt holds the error that c h^p would be and, of the two, the larger difference.
+/// one. The error is a h^p + b h^2p with both, kept between what b h^2p alone gives and twice what c h^p gives. With
+/// one of them, or where the two differences have no common trend, it is c h^q, q the order that was measured with
+/// other cells of the kind, and the doubt holds the error that c h^p would be and, of the two, the larger difference.
 LatticeShare lattice_share(double value, double coarse, double r, double coarser, double s, double p, double q);
 
 /// `measured`: of all companions of the choice, in their order. With the sum s of the shares

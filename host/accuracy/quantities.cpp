@@ -188,7 +188,8 @@ void add_partings(std::vector<Quantity>& all, const Json& stages, double strain_
   }
 }
 
-/// The angle at which a cell was placed: the multiple of `part` that it is up to rounding, for what a cell leaves it does not pass.
+/// The angle at which a cell was placed: the multiple of `part` that it is up to rounding, for what a cell leaves it
+/// does not pass.
 double without_rounding(double angle, double part) {
   constexpr double rounding = 1e-9;
   const double nearest = part * std::round(angle / part);

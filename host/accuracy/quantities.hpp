@@ -37,7 +37,8 @@ struct Quantity {
 ///                          energies of the fluid, which is simulated denser than it is
 ///   aggregates             how many there are at the end
 /// What is not defined in the run is left out. Throws Error(input_output) for files that cannot be read.
-/// beyond: name of a last stage that is not the scene's own (Companion::beyond): moments in it count, nothing else does.
+/// beyond: name of a last stage that is not the scene's own (Companion::beyond): moments in it count, nothing else
+/// does.
 std::vector<Quantity> reported_quantities(const std::filesystem::path& run_directory, const std::string& beyond = {});
 
 /// Strain, or whatever x is, at which `angle` first passes each multiple of `part` between its first and last value;

@@ -53,8 +53,8 @@ class Faults {
     }
   }
 
-  /// Throws what was found, in the order of the text, values that --set has made last: one Error, or SeveralFaults. Does
-  /// nothing where there is none.
+  /// Throws what was found, in the order of the text, values that --set has made last: one Error, or SeveralFaults.
+  /// Does nothing where there is none.
   void raise() const { raise_all(false); }
 
  private:

@@ -15,8 +15,8 @@ inline constexpr std::uintmax_t largest_input = std::uintmax_t{256} << 20U;
 /// Of any file that a scene names.
 inline constexpr std::uintmax_t largest_named = std::uintmax_t{4} << 30U;
 
-/// An open regular file. A pipe, a device or a folder is refused at once: nothing waits for whoever writes into a pipe, and
-/// nothing is read of what has no end. Links are followed.
+/// An open regular file. A pipe, a device or a folder is refused at once: nothing waits for whoever writes into a pipe,
+/// and nothing is read of what has no end. Links are followed.
 class InputFile {
  public:
   /// Throws Error(input_output) for what cannot be opened or is no regular file, Error(bad_input) for one of more than

@@ -45,11 +45,12 @@ inline ProcessEnd run_process(const std::filesystem::path& program, const std::v
 /// the limits of address space (ulimit -v) and of the control group. Infinite where nothing is known.
 double available_memory();
 
-/// From now on processes whose parents have ended become children of this one, even if they have a session of their own.
+/// From now on processes whose parents have ended become children of this one, even if they have a session of their
+/// own.
 void adopt_orphans();
 
-/// Kills all children of this process, with all that they have started, and waits for them. Returns their names, as `ps`
-/// has them. For a time when no process is being run.
+/// Kills all children of this process, with all that they have started, and waits for them. Returns their names, as
+/// `ps` has them. For a time when no process is being run.
 std::vector<std::string> end_children();
 
 }  // namespace rouleau

@@ -18,8 +18,8 @@ std::span<const Synonym> synonyms();
 /// The candidate that is ours for a word, whatever its case; empty where there is none.
 std::string synonym(std::string_view word, const std::vector<std::string>& candidates);
 
-/// The candidate that a word was most likely meant to be: ours for it, or else the nearest in spelling; empty where there
-/// is none.
+/// The candidate that a word was most likely meant to be: ours for it, or else the nearest in spelling; empty where
+/// there is none.
 std::string likely(std::string_view word, const std::vector<std::string>& candidates);
 
 /// `; did you mean "tau"?`, or nothing when no candidate is near.

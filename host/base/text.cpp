@@ -51,7 +51,8 @@ Character next_character(std::string_view text) {
   return {byte(0), 1};
 }
 
-/// Control characters of ASCII and of Latin-1, line and paragraph separators, and what changes the direction of writing.
+/// Control characters of ASCII and of Latin-1, line and paragraph separators, and what changes the direction of
+/// writing.
 bool steers(unsigned code) {
   return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x61c || code == 0x200e || code == 0x200f ||
          (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);

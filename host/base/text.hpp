@@ -32,8 +32,8 @@ std::string misspelt(std::string_view word, const std::vector<std::string>& cand
 /// A number as short as it can be read back with six digits, or with `digits`.
 std::string number(double value, int digits = 6);
 
-/// To `digits` significant digits; a number with more digits before the point is written whole, not with a power of ten,
-/// up to a million.
+/// To `digits` significant digits; a number with more digits before the point is written whole, not with a power of
+/// ten, up to a million.
 std::string rounded(double value, int digits);
 
 /// "6.4 s", "42 s", "3.1 min", "22 h".

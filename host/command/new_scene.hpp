@@ -17,8 +17,8 @@ struct SceneWords {
 SceneWords scene_words(const std::optional<std::string>& first, const std::string& second, const std::string& name);
 
 /// Writes folder/NAME.json, the template of that name, and prints what it holds and what comes next.
-/// Throws Error(bad_input) for a name that is no file's, a template that there is not, and a file that is there already;
-/// Error(input_output).
+/// Throws Error(bad_input) for a name that is no file's, a template that there is not, and a file that is there
+/// already; Error(input_output).
 void new_scene(const std::filesystem::path& folder, const std::string& name, const std::string& template_name);
 
 }  // namespace rouleau::command

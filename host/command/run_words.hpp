@@ -16,8 +16,8 @@ std::string opening(const plan::Plan& plan, const plan::PlanReport& report, int 
                     const std::filesystem::path& folder);
 
 /// Lines on what came out, from summary.json: how the run ended and what it cost; the largest aggregate, when it formed
-/// and broke; relative viscosity and area drift. What the run does not define is left out, as is a viscosity that has an
-/// error bar: accuracy::sentences() says that one.
+/// and broke; relative viscosity and area drift. What the run does not define is left out, as is a viscosity that has
+/// an error bar: accuracy::sentences() says that one.
 std::vector<std::string> closing(const nlohmann::json& summary);
 
 }  // namespace rouleau::command

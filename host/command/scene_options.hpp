@@ -32,7 +32,8 @@ struct SceneOptions {
   [[nodiscard]] plugin::Catalog catalog(const scene::Scene& scene) const;
 };
 
-/// The plan of a scene whose cells have been found to lie apart, within the walls. Throws all that speaks against either.
+/// The plan of a scene whose cells have been found to lie apart, within the walls. Throws all that speaks against
+/// either.
 plan::Plan plan_and_place(const plan::ReadScene& read, const plugin::Catalog& catalog);
 
 /// A scene as the options mean it, read and planned. Its parts refer to each other: it stays where it is.

@@ -1,4 +1,5 @@
-// The text of the files in sdk/template, and of scenes to begin from, which CMake compiles into the program (cmake/embed_texts.cmake).
+// The text of the files in sdk/template, and of scenes to begin from, which CMake compiles into the program
+// (cmake/embed_texts.cmake).
 #pragma once
 
 #include <string_view>

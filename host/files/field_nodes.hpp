@@ -19,8 +19,8 @@ struct FieldNodes {
     std::array<double, 2> first, size;
   };
   [[nodiscard]] Box box() const;
-  /// A field's values on rows [begin, end) of these nodes, a vector's components beside each other; in three dimensions of
-  /// the layer in the middle of z. Throws Error(input_output), also where the field is one of other nodes.
+  /// A field's values on rows [begin, end) of these nodes, a vector's components beside each other; in three dimensions
+  /// of the layer in the middle of z. Throws Error(input_output), also where the field is one of other nodes.
   [[nodiscard]] std::vector<double> rows(const hdf5::File& file, const std::string& dataset, std::size_t begin,
                                          std::size_t end) const;
   /// Of all rows.

@@ -19,8 +19,8 @@ inline constexpr std::uintmax_t largest_table = std::uintmax_t{2} << 30U;
 /// Whole content of a file; throws what InputFile does.
 std::string read_text(const std::filesystem::path& file);
 
-/// Throws Error(input_output) for a link that leads out of the file's folder: whoever gives a run away could show with it
-/// what its reader keeps elsewhere.
+/// Throws Error(input_output) for a link that leads out of the file's folder: whoever gives a run away could show with
+/// it what its reader keeps elsewhere.
 void require_own(const std::filesystem::path& file);
 
 /// Whether a file must be on the disk when it is closed, whatever happens to the machine, or is soon made again.

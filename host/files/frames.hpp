@@ -17,8 +17,8 @@
 //                          in three dimensions [nz, ny, nx, 3] (vorticity, too) and [nz, ny, nx]
 //
 // Every dataset has its unit as attribute "unit". Node (i, j) of the lattice lies at ((i + 1/2) dx, (j + 1/2) dx).
-// first, cell and connectivity or triangles are links to one dataset as long as they do not change, so that they cost nothing per
-// frame.
+// first, cell and connectivity or triangles are links to one dataset as long as they do not change, so that they cost
+// nothing per frame.
 #pragma once
 
 #include <array>
@@ -63,8 +63,8 @@ class FrameWriter {
   /// after them is dropped.
   FrameWriter(std::filesystem::path file, const scene::Scene& scene, const FramesSaved& saved);
 
-  /// Adds a frame and hands it to the system, so that a crash later on mostly leaves a segment that can be read. Has the
-  /// fields given (observe::Field), in which all ranks take part.
+  /// Adds a frame and hands it to the system, so that a crash later on mostly leaves a segment that can be read. Has
+  /// the fields given (observe::Field), in which all ranks take part.
   void write(const observe::Snapshot& snapshot);
   /// Closes the segment, synchronises it with the disk, and tells of all segments so far. The next frame begins
   /// another.
@@ -109,7 +109,8 @@ class FrameWriter {
 /// XDMF text: one temporal collection for the membranes and one for the fields, for frames 0, 1, ... of `h5`.
 std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const FieldGrid& grid);
 
-/// frames.h5 for reading; of a run that is still going on, or was killed, its segments, as if they were one file. Throws Error(input_output).
+/// frames.h5 for reading; of a run that is still going on, or was killed, its segments, as if they were one file.
+/// Throws Error(input_output).
 hdf5::File open_frames(const std::filesystem::path& file);
 
 /// Outlines read back from a run's frames. Throws Error(input_output).

@@ -5,8 +5,8 @@
 
 namespace rouleau::files {
 
-/// For each surface a closed polygon of so many points, counter-clockwise, at equal lengths from the one farthest along x
-/// on; of a cut in several pieces the longest one. Tensions are those at the places of the cut.
+/// For each surface a closed polygon of so many points, counter-clockwise, at equal lengths from the one farthest along
+/// x on; of a cut in several pieces the longest one. Tensions are those at the places of the cut.
 observe::OutlineSnapshot middle_sections(const observe::OutlineSnapshot& surfaces, int points = 128);
 
 }  // namespace rouleau::files

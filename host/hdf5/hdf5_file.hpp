@@ -41,8 +41,8 @@ class Handle {
 class Rows;
 
 /// Makes and reads what Rouleau's HDF5 files are made of. Every member throws Error(input_output) naming the file.
-/// Nothing is read from elsewhere: a link leads to a regular file in the same folder, as frames.h5 does to its segments, or
-/// is refused, and so is a dataset whose values lie in other files (external storage, virtual datasets).
+/// Nothing is read from elsewhere: a link leads to a regular file in the same folder, as frames.h5 does to its
+/// segments, or is refused, and so is a dataset whose values lie in other files (external storage, virtual datasets).
 class File {
  public:
   enum class Mode {
@@ -64,8 +64,9 @@ class File {
   /// that level (1 to 9; level 4 takes twice as long as 1 for files 2 % smaller).
   void write(const std::string& path, const std::vector<hsize_t>& shape, hid_t stored, hid_t given, const void* data,
              const std::string& unit, int compression = 0);
-  /// The same dataset, byte for byte, from some of its rows at a time. They are counted over the first axis, in a dataset
-  /// of layers of rows over the second one and then the first. Nothing else is written to the file before it is full.
+  /// The same dataset, byte for byte, from some of its rows at a time. They are counted over the first axis, in a
+  /// dataset of layers of rows over the second one and then the first. Nothing else is written to the file before it is
+  /// full.
   [[nodiscard]] Rows begin(const std::string& path, const std::vector<hsize_t>& shape, bool layers, hid_t stored,
                            hid_t given, const std::string& unit, int compression = 0);
   void write(const std::string& path, const std::vector<double>& values, const std::string& unit);
@@ -131,8 +132,8 @@ class File {
   Handle handle_;
 };
 
-/// A dataset that is being written, its first rows first. Belongs to its file, which must outlive it. Every member throws
-/// Error(input_output) naming the file.
+/// A dataset that is being written, its first rows first. Belongs to its file, which must outlive it. Every member
+/// throws Error(input_output) naming the file.
 class Rows {
  public:
   /// The next `count` rows. Of a compressed dataset rows are kept, a copy of them, until they fill a chunk: HDF5 would

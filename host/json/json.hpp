@@ -1,7 +1,7 @@
 // nlohmann-json, reading whole numbers from whole numbers alone. Everything that reads JSON includes it by this header.
 //
-// On its own the library casts: 1.5 is read as 1, 5000000000 as another int, and what a cast of 1e300 to an integer does
-// is undefined. A file that was made by somebody else may hold any of them.
+// On its own the library casts: 1.5 is read as 1, 5000000000 as another int, and what a cast of 1e300 to an integer
+// does is undefined. A file that was made by somebody else may hold any of them.
 #pragma once
 
 #include <concepts>

@@ -9,7 +9,8 @@ namespace rouleau::json {
 
 /// Adds all faults, each naming place, value found, what is allowed and, for an unknown key or word, the one that was
 /// most likely meant. Of a value that is wrong altogether no part is judged, and a key is not missing that another one
-/// was most likely meant to be. Only keywords that the shipped schemas use are judged, to which tests/schemas holds them.
+/// was most likely meant to be. Only keywords that the shipped schemas use are judged, to which tests/schemas holds
+/// them.
 void judge(const Document& document, const nlohmann::json& schema, Faults& faults, Cause cause = Cause::bad_input);
 
 /// Throws those faults, in the order of the text.

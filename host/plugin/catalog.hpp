@@ -14,8 +14,8 @@ namespace rouleau::plugin {
 
 /// Folders to search, first to last: those given, the scene's plugin_dirs, ROULEAU_PLUGIN_PATH (secure_getenv, ':'
 /// separated), the user's own folder, base/installation.hpp. Never the working directory. Entries that do not exist are
-/// left out, except those given and those of the scene: they must exist (Error bad_input). Those of the scene are left out
-/// where scenes_may_bring_plugins() says so.
+/// left out, except those given and those of the scene: they must exist (Error bad_input). Those of the scene are left
+/// out where scenes_may_bring_plugins() says so.
 std::vector<std::filesystem::path> plugin_search_path(const std::vector<std::filesystem::path>& given,
                                                       const std::vector<std::filesystem::path>& scene);
 
@@ -33,8 +33,9 @@ std::filesystem::path user_plugin_folder();
 /// Whether the name of a file leads through a folder.
 bool is_below(const std::filesystem::path& file, const std::filesystem::path& folder);
 
-/// Why a file is on the search path: "user" of the user's own folder, "environment" of ROULEAU_PLUGIN_PATH, "installation"
-/// of what was installed with this code; "named" where an option or a scene names its folder. Of several the first in the order of the search.
+/// Why a file is on the search path: "user" of the user's own folder, "environment" of ROULEAU_PLUGIN_PATH,
+/// "installation" of what was installed with this code; "named" where an option or a scene names its folder. Of several
+/// the first in the order of the search.
 std::string origin_of(const std::filesystem::path& file, const std::vector<std::filesystem::path>& named);
 
 class Catalog {

@@ -1,5 +1,5 @@
-// The text of the schemas of a manifest (sdk/schema), of a lock and of a collection's index, which CMake compiles into the program
-// (cmake/embed_texts.cmake).
+// The text of the schemas of a manifest (sdk/schema), of a lock and of a collection's index, which CMake compiles into
+// the program (cmake/embed_texts.cmake).
 #pragma once
 
 #include <string_view>

@@ -19,8 +19,8 @@ std::string reason_not_loadable(const std::filesystem::path& file, const std::st
 /// Names of all symbols that other modules can see. Throws std::runtime_error for a file that is no library or damaged.
 std::vector<std::string> exported_symbols(const std::filesystem::path& file);
 
-/// Makes the library's own what the loader would take from any library that has the same (STB_GNU_UNIQUE: variables of inline
-/// functions and of templates in C++). False where there is no such symbol.
+/// Makes the library's own what the loader would take from any library that has the same (STB_GNU_UNIQUE: variables of
+/// inline functions and of templates in C++). False where there is no such symbol.
 bool own_unique_symbols(std::string& library);
 
 struct LibrarySymbol {

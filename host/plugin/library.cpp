@@ -97,7 +97,8 @@ class Kept {
   std::map<Version, Value> values_;
 };
 
-/// Throws where another library lies there by now than when the manifest was read. A lock says more: which one it must be.
+/// Throws where another library lies there by now than when the manifest was read. A lock says more: which one it must
+/// be.
 void require_version(const Manifest& manifest) {
   if (manifest.locked || stamp_of(manifest.library) == manifest.library_stamp) return;
   refuse(manifest, "has changed since its manifest was read", {"begin anew, when nobody writes to it any more"});
@@ -133,8 +134,8 @@ fs::path sealed_copy(const Manifest& manifest, const fs::path& file) {
   return copies.put(version, sealed(manifest, file, false));
 }
 
-/// Whether the loader would give back, whole or in part, what this has loaded before: it knows files by name and number, and
-/// variables of inline functions and templates (C++) by name alone.
+/// Whether the loader would give back, whole or in part, what this has loaded before: it knows files by name and
+/// number, and variables of inline functions and templates (C++) by name alone.
 bool takes_after_another(const fs::path& file) {
   static std::atomic<bool> unique_before = false;
   static auto& loaded = *new Kept<bool>;
@@ -201,8 +202,8 @@ fs::path checked_library(const Manifest& manifest) {
 }
 
 rouleau_open_function load_library(const Manifest& manifest) {
-  // For good: code of a plugin may be anywhere on a stack, and its tables live in it. Each version of a file once, though
-  // the models of every stage are made anew.
+  // For good: code of a plugin may be anywhere on a stack, and its tables live in it. Each version of a file once,
+  // though the models of every stage are made anew.
   static auto& loaded = *new Kept<boost::dll::shared_library>;  // never destroyed
   const Version version = version_of(manifest);
   boost::dll::shared_library* library = loaded.find(version);

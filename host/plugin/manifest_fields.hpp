@@ -23,9 +23,9 @@ void check_roles(const json::Document& document, const Manifest& manifest);
 /// "dimensions" and "in_3d" fit each other and the kind.
 void check_dimensions(const json::Document& document, const Manifest& manifest);
 
-/// "needs" and "gives" hold names of the manifest's kind and dimension only, and what every model of this kind must have; a
-/// membrane law keeps to one element; "checks" name parameters, inputs of "needs" and outputs of "gives". `at`: the object of
-/// the manifest that holds the three.
+/// "needs" and "gives" hold names of the manifest's kind and dimension only, and what every model of this kind must
+/// have; a membrane law keeps to one element; "checks" name parameters, inputs of "needs" and outputs of "gives". `at`:
+/// the object of the manifest that holds the three.
 void check_quantities(const json::Document& document, const Manifest& manifest, const std::string& at);
 
 /// An object of the manifest ("inactive_when", "stands_for") names parameters and gives values that these can have.

@@ -53,7 +53,8 @@ ModelKind kind_of(const std::string& word) {
 
 json::Document read_manifest_document(const fs::path& file) {
   try {
-    // Folders of plugins may hold data as well; reading all of it to find out that it is no manifest would take for ever.
+    // Folders of plugins may hold data as well; reading all of it to find out that it is no manifest would take for
+    // ever.
     return json::Document::parse(read_input(file, 1U << 20U), file.string(), Cause::plugin_refused);
   } catch (const Error& error) {
     throw Error(Cause::plugin_refused, error.place(), error.problem(), error.remedy());
@@ -89,8 +90,8 @@ Manifest read_manifest(const json::Document& document, const fs::path& file, con
   manifest.stands_for = without_own_keys(root.value("stands_for", Json()));
   manifest.claims = without_own_keys(root.value("claims", Json::object()));
   manifest.checks = root.value("checks", Json::array());
-  // A potential is an energy per area, whatever the dimension, unless it wants to know in which direction surfaces slide;
-  // older manifests do not say so.
+  // A potential is an energy per area, whatever the dimension, unless it wants to know in which direction surfaces
+  // slide; older manifests do not say so.
   const bool of_both = manifest.kind == ModelKind::interaction && !manifest.needs_input("tangential_velocity");
   manifest.dimensions = root.value("dimensions", of_both ? std::vector{2, 3} : manifest.dimensions);
   if (root.contains("lattices")) manifest.dimensions = dimensions_of(words_of(root, "lattices"));

@@ -109,7 +109,8 @@ class Resolver {
     return value;
   }
 
-  /// A forgotten unit makes a length of metres; a length of an interaction beyond the box makes no sense with one, either.
+  /// A forgotten unit makes a length of metres; a length of an interaction beyond the box makes no sense with one,
+  /// either.
   void require_plausible(const Parameter& parameter, const Json& written, double value) const {
     constexpr double unit_forgotten = 1e3;
     constexpr units::Dimension length{{0, 1}};

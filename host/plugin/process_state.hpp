@@ -27,8 +27,8 @@ struct FloatingPointMode {
 FloatingPointMode floating_point_mode();
 
 /// Working directory, file mode mask, signal handlers and the thread's signal mask, locale, environment, limits of
-/// resources, priority, handlers of C++ and the floating-point mode as they are when it is made. What the system refuses to
-/// tell, then or later, is taken for unchanged.
+/// resources, priority, handlers of C++ and the floating-point mode as they are when it is made. What the system
+/// refuses to tell, then or later, is taken for unchanged.
 class ProcessState {
  public:
   ProcessState();

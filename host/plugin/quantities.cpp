@@ -12,8 +12,8 @@ struct Quantity {
   const char* unit;
 };
 
-/// Lengths of the two-dimensional world are metres; what is per unit depth there is so in SI, too. Stresses, energies per
-/// length there and per area in three dimensions have the same unit then.
+/// Lengths of the two-dimensional world are metres; what is per unit depth there is so in SI, too. Stresses, energies
+/// per length there and per area in three dimensions have the same unit then.
 const Quantity& quantity_of(const Manifest& manifest, const std::string& name) {
   static const Quantity number{{}, ""};
   static const std::map<std::string, Quantity> quantities = {{"stretch", number},

@@ -7,15 +7,15 @@
 
 namespace rouleau::shape {
 
-/// Nodes no farther apart than this share of a mesh's largest extent are one, where the mesh is not closed otherwise: a few
-/// units in the last of seven digits. Edges of a million even triangles are a hundred times longer.
+/// Nodes no farther apart than this share of a mesh's largest extent are one, where the mesh is not closed otherwise: a
+/// few units in the last of seven digits. Edges of a million even triangles are a hundred times longer.
 inline constexpr double weld_distance = 1e-5;
 
-/// Coordinates are in the file's own unit. Faces of more corners are cut into triangles. The format follows from how the
-/// file begins: OFF in text (also COFF, NOFF, STOFF), OBJ, PLY in text or binary, STL in text or binary, of which corners at
-/// the same place are one node; the name's end tells OBJ that begins with something else. A mesh that is not closed is
-/// welded (`weld_distance`). Throws what InputFile does, and Error(bad_input), with the line where one is to blame, for what is no surface of finite
-/// size that is closed, in one piece and without seams (core::Mesh).
+/// Coordinates are in the file's own unit. Faces of more corners are cut into triangles. The format follows from how
+/// the file begins: OFF in text (also COFF, NOFF, STOFF), OBJ, PLY in text or binary, STL in text or binary, of which
+/// corners at the same place are one node; the name's end tells OBJ that begins with something else. A mesh that is not
+/// closed is welded (`weld_distance`). Throws what InputFile does, and Error(bad_input), with the line where one is to
+/// blame, for what is no surface of finite size that is closed, in one piece and without seams (core::Mesh).
 TriangleSurface read_mesh(const std::filesystem::path& file);
 
 }  // namespace rouleau::shape

@@ -110,7 +110,8 @@ class Words {
 /// Cut into triangles.
 void add_face(TriangleSurface& surface, const std::vector<int>& corners, const Words& words);
 
-// What the file says, whether it is closed or not. Every corner of STL is a node of its own. They throw Error(bad_input).
+// What the file says, whether it is closed or not. Every corner of STL is a node of its own. They throw
+// Error(bad_input).
 TriangleSurface read_off(Words& words);
 TriangleSurface read_obj(Words& words);
 TriangleSurface read_ply(Words& words);

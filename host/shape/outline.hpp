@@ -25,8 +25,8 @@ Eigen::Vector2d biconcave_place(double angle);
 double shape_radius(const scene::Shape& shape);
 /// That of the smallest cell of a scene; 0 without cells.
 double smallest_radius(const scene::Scene& scene);
-/// Length of the membrane as placed, m, of a shape of two dimensions: exact for circles, to 1e-5 for others (Ramanujan's
-/// formula for ellipses).
+/// Length of the membrane as placed, m, of a shape of two dimensions: exact for circles, to 1e-5 for others
+/// (Ramanujan's formula for ellipses).
 double shape_perimeter(const scene::Shape& shape);
 
 /// Area that an outline encloses, m2.

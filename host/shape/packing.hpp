@@ -25,11 +25,11 @@ double cells_for(double hematocrit, const scene::CellType& type, const scene::Ra
 /// Share of the packing's region, of its area or volume, that its cells fill. In a tube a region is a piece of it.
 double hematocrit_of(const scene::RandomPacking& packing, const scene::CellType& type, const scene::Domain& domain);
 
-/// Gives a centre and an angle, in three dimensions an axis, too, to the cells of all packings, [first, first + count) of
-/// `cells`, in their shape at rest. All other cells are obstacles. No cell may be longer, and no gap wider, than the domain
-/// is from corner to corner: the periodic images that come near a cell would be countless. Outlines and surfaces keep the
-/// larger gap of the two packings from each other, and that of their own packing from obstacles and walls; periodic images
-/// count as cells.
+/// Gives a centre and an angle, in three dimensions an axis, too, to the cells of all packings, [first, first + count)
+/// of `cells`, in their shape at rest. All other cells are obstacles. No cell may be longer, and no gap wider, than the
+/// domain is from corner to corner: the periodic images that come near a cell would be countless. Outlines and surfaces
+/// keep the larger gap of the two packings from each other, and that of their own packing from obstacles and walls;
+/// periodic images count as cells.
 ///
 /// Random sequential adsorption ends, for cells of this shape, near a third of the area. So a cell that finds no room
 /// is drawn smaller, and hard-particle Monte Carlo moves (Metropolis et al., J. Chem. Phys. 21, 1953) of all cells make
@@ -38,8 +38,8 @@ double hematocrit_of(const scene::RandomPacking& packing, const scene::CellType&
 /// order in which they grew. Every configuration without overlap is then equally likely, as far as the sweeps reach.
 ///
 /// The same request gives the same centres and angles to the last bit on every machine: the engine is the C++
-/// standard's 64-bit Mersenne twister, nothing is decided by a function of libm (rigid_body.hpp), angles are multiples of
-/// 2 pi / 2^20, and effort is counted in sweeps, not in seconds.
+/// standard's 64-bit Mersenne twister, nothing is decided by a function of libm (rigid_body.hpp), angles are multiples
+/// of 2 pi / 2^20, and effort is counted in sweeps, not in seconds.
 std::optional<PackingShortfall> pack(const scene::Domain& domain, const std::vector<scene::CellType>& types,
                                      const std::vector<scene::RandomPacking>& packings,
                                      std::vector<scene::CellPlacement>& cells, const PackingWatch& watch = {});

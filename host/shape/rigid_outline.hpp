@@ -27,8 +27,8 @@ class RigidOutline {
     cell.angle = radians(orientation.angle);
   }
 
-  /// Outline of a cell type. A polygon of more than `most_nodes` is replaced by a coarser one and allowance() says by how
-  /// much gaps may be smaller than they seem.
+  /// Outline of a cell type. A polygon of more than `most_nodes` is replaced by a coarser one and allowance() says by
+  /// how much gaps may be smaller than they seem.
   RigidOutline(const scene::CellType& type, double unit, double gap);
   static constexpr int most_nodes = 200;
 

@@ -160,9 +160,10 @@ RigidSurface::RigidSurface(const scene::CellType& type, double unit, double gap)
   make_map();
 }
 
-// Let all corners of a triangle, whose sides are at most L, be farther than t from another surface, and m be its smallest
-// distance. The distance d to any set has second derivatives of at most 1/d, so d - x^2/2m is concave on the triangle, and m
-// lies at most R^2/2m below t, where R = L / sqrt(3) is at least the radius of the smallest circle around the triangle.
+// Let all corners of a triangle, whose sides are at most L, be farther than t from another surface, and m be its
+// smallest distance. The distance d to any set has second derivatives of at most 1/d, so d - x^2/2m is concave on the
+// triangle, and m lies at most R^2/2m below t, where R = L / sqrt(3) is at least the radius of the smallest circle
+// around the triangle.
 // With t = g + R^2/2g, m is at least g if R < g; and t - R always, for a point is at most R from a corner.
 void RigidSurface::make_samples(double gap) {
   samples_ = nodes_;

@@ -76,8 +76,8 @@ class RigidSurface {
   [[nodiscard]] const std::vector<Place<3>>& samples() const { return samples_; }
   [[nodiscard]] const BallTree& sample_tree() const { return sample_tree_; }
 
-  /// Whether a point lies outside and at least that far from the surface, from a map of distances where that suffices, else
-  /// from the triangles. A point outside that is as near as the map is coarse may be denied.
+  /// Whether a point lies outside and at least that far from the surface, from a map of distances where that suffices,
+  /// else from the triangles. A point outside that is as near as the map is coarse may be denied.
   [[nodiscard]] bool keeps(const Place<3>& point, double least) const;
   /// The same by the map alone: false where that does not suffice.
   [[nodiscard]] bool surely_keeps(const Place<3>& point, double least) const;

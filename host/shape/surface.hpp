@@ -7,15 +7,15 @@
 
 namespace rouleau::shape {
 
-/// Each of an icosahedron's 20 triangles in n^2 parts, on the sphere of radius 1: 20 n^2 triangles, 10 n^2 + 2 nodes. Edges
-/// differ by a quarter at most.
+/// Each of an icosahedron's 20 triangles in n^2 parts, on the sphere of radius 1: 20 n^2 triangles, 10 n^2 + 2 nodes.
+/// Edges differ by a quarter at most.
 TriangleSurface unit_sphere(int n);
 
 /// Semi-axes along x, y and z.
 TriangleSurface ellipsoid(int n, const core::Vec<3>& semi_axes);
 
-/// The biconcave disc of shape/outline.hpp turned about its axis, which lies along y. Nodes lie at equal distances along
-/// meridians.
+/// The biconcave disc of shape/outline.hpp turned about its axis, which lies along y. Nodes lie at equal distances
+/// along meridians.
 TriangleSurface biconcave_disc(int n, double radius);
 
 /// A mesh, m, the centroid of the volume that it encloses in the origin. Throws what read_mesh() throws.

@@ -54,9 +54,9 @@ std::string name_of(const std::vector<Axis>& axes, const Point& point);
 /// Error(bad_input).
 void put_changes(nlohmann::json& scene, const json::Document& document, const std::string& pointer);
 
-/// The settings of the axis at `pointer`, which has "refine" (schema): factors of nodes, segments and, squared, triangles,
-/// labelled by the first cell type's radius in lattice spacings, by the number of nodes across where there is none, or, of
-/// membranes alone, by its segments or triangles.
+/// The settings of the axis at `pointer`, which has "refine" (schema): factors of nodes, segments and, squared,
+/// triangles, labelled by the first cell type's radius in lattice spacings, by the number of nodes across where there
+/// is none, or, of membranes alone, by its segments or triangles.
 std::vector<Setting> refined_settings(const json::Document& document, const std::string& pointer,
                                       const nlohmann::json& base_scene);
 

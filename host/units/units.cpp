@@ -179,8 +179,8 @@ struct Units::System {
   }
 };
 
-/// The database that an installation which brings its libraries along has with it. Empty without one; UDUNITS then looks
-/// where it was built to, as where the variable is set.
+/// The database that an installation which brings its libraries along has with it. Empty without one; UDUNITS then
+/// looks where it was built to, as where the variable is set.
 std::string installed_database() {
   if (secure_getenv("UDUNITS2_XML_PATH") != nullptr) return {};
   std::error_code error;

@@ -28,7 +28,7 @@ MOST_LINES_OF_FUNCTION = 80
 MOST_LINES_OF_UNIT = 450
 # What is still beyond: these numbers may fall, and leave the list; none may rise.
 UNITS_IN_CIRCLES = {"scene": 2, "plan": 2}
-LONG_LINES = 509
+LONG_LINES = 365
 LONG_FUNCTIONS = {"accuracy/companions": 103, "core/fluid/energetics": 130, "observe/observables": 183,
                   "plan/plan_report": 83, "plan/stability_limits": 236, "report/report_data": 105}
 LONG_UNITS = {"core/coupling/surface_coupling": 520, "core/fluid/fluid": 988,

@@ -10,7 +10,8 @@
 
 namespace rouleau::command {
 
-/// Stores the options' values. Returns false after printing `help` and the options when --help or -h is among the arguments.
+/// Stores the options' values. Returns false after printing `help` and the options when --help or -h is among the
+/// arguments.
 /// Throws Error(bad_input) for an unknown option (nearest name), a missing or malformed value, a missing argument.
 bool parse_command_line(const std::string& command, const std::string& help, const std::vector<std::string>& arguments,
                         boost::program_options::options_description& description,

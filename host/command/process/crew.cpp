@@ -47,7 +47,8 @@ void Crew::join(const transport::Launch& launch) {
   try {
     joined = new Crew(launch);  // for the life of the process: messages may be on their way when it ends
   } catch (const Error&) {
-    // Where the first rank fails, too, the launcher ends the others (Open MPI's after a second), and there is one message.
+    // Where the first rank fails, too, the launcher ends the others (Open MPI's after a second), and there is one
+    // message.
     if (launch.rank > 0) std::this_thread::sleep_for(patience);
     throw;
   }

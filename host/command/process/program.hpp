@@ -24,9 +24,9 @@ void know_options(std::vector<std::string> names);
 void check_instruction_set();
 
 /// Calls a program's body and returns its exit code. What the body throws becomes a message on standard error, and so
-/// does an output that could not be written. `too_large`: what to do where memory does not suffice. Where the environment
-/// has ROULEAU_ERRORS=json, an Error becomes one line of JSON: {"exit_code", "faults": [{"file", "pointer", "line",
-/// "column", "problem", "remedy"}]}, with "" and 0 for what is unknown,
+/// does an output that could not be written. `too_large`: what to do where memory does not suffice. Where the
+/// environment has ROULEAU_ERRORS=json, an Error becomes one line of JSON: {"exit_code", "faults": [{"file", "pointer",
+/// "line", "column", "problem", "remedy"}]}, with "" and 0 for what is unknown,
 /// and "rank" where a rank other than the first has failed.
 int run_program(const std::function<int()>& body, const std::string& too_large);
 

@@ -18,14 +18,14 @@ void silence_terminal();
 /// Standard output is the descriptor 1 again: for a program that this process becomes.
 void give_terminal_back();
 
-/// Characters in a line of what is printed: COLUMNS, or what the terminal has, at least 40 and at most 100. Lines of what
-/// goes into a file or another program, which may look for words in them, are as long as they are: `without`.
+/// Characters in a line of what is printed: COLUMNS, or what the terminal has, at least 40 and at most 100. Lines of
+/// what goes into a file or another program, which may look for words in them, are as long as they are: `without`.
 std::size_t text_width(std::size_t without = std::string::npos);
 
 enum class Colour { red = 31, green = 32, yellow = 33 };
 
-/// What is printed to the stream meanwhile is coloured, if the stream is std::cout or std::cerr, leads to a terminal, and
-/// neither NO_COLOR (https://no-color.org) nor TERM=dumb asks for plain text.
+/// What is printed to the stream meanwhile is coloured, if the stream is std::cout or std::cerr, leads to a terminal,
+/// and neither NO_COLOR (https://no-color.org) nor TERM=dumb asks for plain text.
 class Coloured {
  public:
   Coloured(std::ostream& stream, Colour colour);
