@@ -2,7 +2,6 @@
 
 #include "base/text.hpp"
 #include "json_pointer.hpp"
-#include "syntax_fault.hpp"
 
 namespace rouleau::json {
 namespace {

@@ -1,11 +1,11 @@
 // Parses JSON text strictly and keeps the place of every value.
 #pragma once
 
-#include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include "json.hpp"
+#include "syntax_fault.hpp"
 #include "text_tree.hpp"
 
 namespace rouleau::json {
@@ -14,14 +14,6 @@ namespace rouleau::json {
 inline constexpr std::size_t largest_text = 16U << 20U;  ///< bytes
 inline constexpr std::size_t deepest_nesting = 200;      ///< objects and arrays within each other
 inline constexpr std::size_t longest_string = 8192;      ///< bytes
-
-/// A fault in JSON text: what() is one sentence, with the offset it speaks of.
-struct TextFault : std::runtime_error {
-  TextFault(std::size_t at, const std::string& problem, std::string where = {})
-      : std::runtime_error(problem), offset(at), pointer(std::move(where)) {}
-  std::size_t offset;
-  std::string pointer;  ///< of the object or array it lies in, where that is known
-};
 
 struct ParsedText {
   nlohmann::json root;
