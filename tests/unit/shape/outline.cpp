@@ -19,8 +19,8 @@ namespace {
 Membranes membranes_of(const Outline& outline) {
   Membranes m;
   for (const auto& node : outline.nodes) {
-    m.x.push_back(node.x());
-    m.y.push_back(node.y());
+    m.position[0].push_back(node.x());
+    m.position[1].push_back(node.y());
   }
   m.cells.push_back({{0, m.node_count()}, 0, 0, 0});
   return m;
@@ -73,8 +73,8 @@ TEST_CASE("two biconcave cells 3.52 um apart have a rim gap of 0.95503 um") {
   for (const double y : {0.0, 3.52}) {
     m.cells.push_back({{m.node_count(), 2000}, 0, 0, 0});
     for (const auto& node : outline.nodes) {
-      m.x.push_back(node.x());
-      m.y.push_back(node.y() + y);
+      m.position[0].push_back(node.x());
+      m.position[1].push_back(node.y() + y);
     }
   }
   CHECK(smallest_gap(m, 0, 1, periodic_box(1000), 2.0) == Approx(0.95503).margin(1e-5));
@@ -94,10 +94,10 @@ TEST_CASE("the gap of two cells is that of the nearest periodic images") {
 TEST_CASE("the inertia ellipse of an elliptic outline is the ellipse") {
   const double angle = GENERATE(-1.2, 0.0, 0.7);
   Membranes m = membranes_of(make_outline(Ellipse{{3.0, 1.0}}, 1000));
-  for (std::size_t i = 0; i < m.x.size(); ++i) {
-    const double x = m.x[i], y = m.y[i];
-    m.x[i] = 100 + std::cos(angle) * x - std::sin(angle) * y;
-    m.y[i] = -50 + std::sin(angle) * x + std::cos(angle) * y;
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) {
+    const double x = m.position[0][i], y = m.position[1][i];
+    m.position[0][i] = 100 + std::cos(angle) * x - std::sin(angle) * y;
+    m.position[1][i] = -50 + std::sin(angle) * x + std::cos(angle) * y;
   }
   const InertiaEllipse ellipse = inertia_ellipse(m, m.cells[0]);
   CHECK(ellipse.semi_major == Approx(3).epsilon(1e-5));  // the polygon is inscribed: second order
