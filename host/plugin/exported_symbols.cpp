@@ -60,37 +60,25 @@ bool is_exported(const Symbol& symbol) {
          (visibility == STV_DEFAULT || visibility == STV_PROTECTED);
 }
 
-/// The symbols of one kind of table that are `wanted`.
-std::vector<LibrarySymbol> symbols_of(ElfFile& file, const std::vector<Section>& sections, std::uint32_t table,
-                                      bool (*wanted)(const Symbol&)) {
+std::vector<std::string> exported(ElfFile& file, const std::vector<Section>& sections) {
   constexpr std::size_t most_bytes = std::size_t{1} << 28;  // of all names; those of a damaged table may overlap
-  std::vector<LibrarySymbol> symbols;
+  std::vector<std::string> names;
   std::size_t bytes = 0;
   for (const Section& section : sections) {
-    if (section.sh_type != table) continue;
+    if (section.sh_type != SHT_DYNSYM) continue;
     if (section.sh_link >= sections.size()) throw Damaged("has a damaged table of symbols");
-    const Section& names = sections[section.sh_link];
-    std::vector<char> text = file.read<char>(names.sh_offset, names.sh_size);
+    const Section& strings = sections[section.sh_link];
+    std::vector<char> text = file.read<char>(strings.sh_offset, strings.sh_size);
     text.push_back('\0');
     for (const Symbol& symbol : file.read<Symbol>(section.sh_offset, section.sh_size / sizeof(Symbol))) {
-      if (!wanted(symbol) || symbol.st_name >= text.size()) continue;
-      symbols.push_back({&text[symbol.st_name], symbol.st_value, symbol.st_size});
-      bytes += symbols.back().name.size() + sizeof(LibrarySymbol);
+      if (!is_exported(symbol) || symbol.st_name >= text.size()) continue;
+      names.emplace_back(&text[symbol.st_name]);
+      bytes += names.back().size() + sizeof(std::string);
       if (bytes > most_bytes) throw Damaged("has a damaged table of symbols");
     }
   }
-  return symbols;
-}
-
-std::vector<std::string> exported(ElfFile& file, const std::vector<Section>& sections) {
-  std::vector<std::string> names;
-  for (LibrarySymbol& symbol : symbols_of(file, sections, SHT_DYNSYM, is_exported)) {
-    names.push_back(std::move(symbol.name));
-  }
   return names;
 }
-
-bool is_variable(const Symbol& symbol) { return symbol.st_shndx != SHN_UNDEF && (symbol.st_info & 0xf) == STT_OBJECT; }
 
 /// What of the file's header this process cannot load.
 std::string foreign_part(const Header& header) {
@@ -160,12 +148,6 @@ bool own_unique_symbols(std::string& library) {
     }
   }
   return any;
-}
-
-std::vector<LibrarySymbol> variables(const std::filesystem::path& path) {
-  ElfFile file(path);
-  const Header header = file.read<Header>(0, 1)[0];
-  return symbols_of(file, file.read<Section>(header.e_shoff, header.e_shnum), SHT_SYMTAB, is_variable);
 }
 
 }  // namespace rouleau::plugin

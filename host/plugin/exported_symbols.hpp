@@ -1,7 +1,6 @@
 // Reads from a shared library's file what it exports, without loading it.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -22,14 +21,5 @@ std::vector<std::string> exported_symbols(const std::filesystem::path& file);
 /// Makes the library's own what the loader would take from any library that has the same (STB_GNU_UNIQUE: variables of
 /// inline functions and of templates in C++). False where there is no such symbol.
 bool own_unique_symbols(std::string& library);
-
-struct LibrarySymbol {
-  std::string name;
-  std::uint64_t address;  ///< in the file; the loader adds where it loads
-  std::uint64_t size;     ///< bytes
-};
-
-/// All variables of a library whose names were not stripped from it. Throws as exported_symbols.
-std::vector<LibrarySymbol> variables(const std::filesystem::path& file);
 
 }  // namespace rouleau::plugin

@@ -21,7 +21,7 @@
 #include "conform/check.hpp"
 #include "conform/guarded_memory.hpp"
 #include "conform/isolation/frozen_memory.hpp"
-#include "conform/isolation/syscall_trap.hpp"
+#include "conform/isolation/system_calls.hpp"
 #include "conform/isolation/worlds.hpp"
 #include "conform/report_line.hpp"
 #include "conform/subject.hpp"
@@ -81,14 +81,14 @@ void watch_signals() {
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) sigaction(signal, &action, nullptr);
 }
 
-/// `world`: null, or the number of the world that was entered, whose text goes to the parent instead of a finding.
+/// `world`: null, or the world that was entered, whose text goes to the parent instead of a finding.
 conform::Finding run(const std::string& name, const std::string& file, std::uint64_t seed, int dimension,
                      const char* world) {
   try {
     const units::Units units;
     const conform::Subject subject(plugin::read_manifest(file, units), seed, dimension);
     if (world != nullptr) {
-      conform::send(conform::outputs_in_world(subject, static_cast<unsigned>(std::stoul(world))));
+      conform::send(conform::outputs_in_world(subject, conform::world_named(world)));
       conform::end_process(0);
     }
     const conform::Check* check = conform::find_check(name, subject.manifest().kind);
@@ -121,8 +121,7 @@ int main(int count, char** words) {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   watch_signals();
-  conform::limit_system_calls(conform::Allowed::all_but_exit);
-  if (count == 6) conform::enter_world(static_cast<unsigned>(std::strtoul(words[5], nullptr, 10)), count, words);
+  if (count == 6) conform::enter_world(conform::world_named(words[5]), count, words);
   const int dimension = std::strtol(words[4], nullptr, 10) == 3 ? 3 : 2;
   conform::send(
       run(words[2], words[1], std::strtoull(words[3], nullptr, 10), dimension, count > 5 ? words[5] : nullptr));

@@ -9,7 +9,7 @@
 #include "conform/call.hpp"
 #include "conform/check.hpp"
 #include "conform/guarded_memory.hpp"
-#include "conform/isolation/allocation_count.hpp"
+#include "conform/isolation/counted_functions.hpp"
 #include "conform/subject.hpp"
 #include "plugin/library.hpp"
 #include "plugin/parameter_ranges.hpp"
@@ -200,24 +200,12 @@ Finding read_only_inputs(const Subject& subject) {
   return Finding::passed("inputs in memory that cannot be written");
 }
 
-/// While it lives, what is allocated lies between guards.
-class GuardedAllocations {
- public:
-  GuardedAllocations() { set(true); }
-  ~GuardedAllocations() { set(false); }
-  GuardedAllocations(const GuardedAllocations&) = delete;
-  GuardedAllocations& operator=(const GuardedAllocations&) = delete;
-
- private:
-  static void set(bool on) {
-    if (process_counts == nullptr || process_counts->pool == nullptr) return;
-    process_counts->from_pool = process_counts->guarded = on;
-  }
-};
-
+/// Instances with guards behind all that was allocated for them.
 std::vector<plugin::ModelInstance> make_guarded(const Subject& subject) {
-  const GuardedAllocations guarded;
-  return subject.make_each_choice();
+  if (process_counts != nullptr) process_counts->from_pool = true;
+  auto instances = subject.make_each_choice();
+  if (process_counts != nullptr) process_counts->from_pool = false;
+  return instances;
 }
 
 Finding bounds(const Subject& subject) {

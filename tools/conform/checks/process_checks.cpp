@@ -6,7 +6,7 @@
 
 #include "conform/call.hpp"
 #include "conform/check.hpp"
-#include "conform/isolation/allocation_count.hpp"
+#include "conform/isolation/counted_functions.hpp"
 #include "conform/subject.hpp"
 #include "plugin/library.hpp"
 #include "plugin/process_state.hpp"

@@ -21,37 +21,30 @@ class FrozenMemory {
 
   void watch();
   void freeze();
-  /// What has changed that could not be frozen ("the thread-local variable x", ...); empty: nothing.
+  /// What has changed that could not be frozen ("a thread-local variable of ..."); empty: nothing.
   std::string thaw();
 
-  /// As GuardedArray::describe: "compute writes to the variable calls". For handlers of signals.
+  /// As GuardedArray::describe: "compute writes to a variable of libmodel.so". For handlers of signals.
   static bool describe(const void* address, char* text, std::size_t size);
 
  private:
-  struct Region {
+  struct Region {  // whole pages
     std::byte *begin, *end;
-    int protection;
+    const std::byte* base;  // where the library was loaded
     std::string name;
   };
   struct Part {  // compared, for others may write to the same pages
     const std::byte* begin;
     std::size_t size;
     std::string name;
-    bool of_c_library;  // which changes it itself where it allocates and locks
+    bool of_c_library;  // which changes it itself where it allocates
     std::vector<std::byte> copy;
   };
-  struct Variable {
-    const std::byte *begin, *end;
-    std::string name;
-  };
-  static std::vector<Region> writable();
-  [[nodiscard]] const Variable* variable_at(const std::byte* address) const;
 
-  std::vector<Region> before_, frozen_;
   std::set<std::uintptr_t> objects_before_;  // where libraries were loaded
+  std::vector<Region> frozen_;
   std::vector<Part> compared_;
-  std::vector<Variable> variables_;
-  std::int64_t calls_of_the_library_ = 0;  // allocations and locks: these change the C library's variables
+  std::int64_t allocations_ = 0;
 };
 
 /// Allocates the thread-local variables of all libraries for this thread, which would happen when they are first used.

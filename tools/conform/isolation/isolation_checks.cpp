@@ -5,12 +5,13 @@
 #include <sys/wait.h>
 
 #include <atomic>
+#include <cstdio>
+#include <cstdlib>
 #include <deque>
 #include <functional>
 #include <sstream>
 #include <thread>
 
-#include "allocation_count.hpp"
 #include "base/error.hpp"
 #include "base/foreign_call.hpp"
 #include "base/text.hpp"
@@ -19,11 +20,12 @@
 #include "conform/checks/trials.hpp"
 #include "conform/report_line.hpp"
 #include "conform/subject.hpp"
+#include "counted_functions.hpp"
 #include "frozen_memory.hpp"
 #include "plugin/library.hpp"
+#include "plugin/process_state.hpp"
 #include "plugin/table_checks.hpp"
-#include "process_traces.hpp"
-#include "syscall_trap.hpp"
+#include "system_calls.hpp"
 #include "worlds.hpp"
 
 namespace rouleau::conform {
@@ -69,14 +71,13 @@ std::vector<Trial> some_trials(const Subject& subject, Random& random) {
   return trials(subject, random, subject.typical_setting(), 3);
 }
 
-/// Lets the model's function make no system call and read no clock, and counts what it allocates and locks, and how
-/// often it reads the clock: not every machine lets that be forbidden. As there is no way back, the thread ends after
-/// the call.
+/// Lets the model's function make no system call and read no clock, and counts what it allocates. As there is no way
+/// back, the thread ends after the call.
 class QuietWatch : public CallWatch {
  public:
   std::atomic<bool> done{false};
   bool trapped = false;
-  std::int64_t allocations = 0, locks = 0, clock_reads = 0;
+  std::int64_t allocations = 0;
 
   void before() override {
     touch_thread_local_storage();
@@ -85,15 +86,9 @@ class QuietWatch : public CallWatch {
 #endif
     trapped = limit_system_calls(Allowed::nothing);
     allocations = process_counts != nullptr ? process_counts->allocations.load() : 0;
-    locks = process_counts != nullptr ? process_counts->locks.load() : 0;
-    clock_reads = process_counts != nullptr ? process_counts->clock_reads.load() : 0;
   }
   void after() override {
-    if (process_counts != nullptr) {
-      allocations = process_counts->allocations - allocations;
-      locks = process_counts->locks - locks;
-      clock_reads = process_counts->clock_reads - clock_reads;
-    }
+    if (process_counts != nullptr) allocations = process_counts->allocations - allocations;
     done = true;
     end_thread();
   }
@@ -101,7 +96,7 @@ class QuietWatch : public CallWatch {
 
 Finding quiet(const Subject& subject) {
   Random random = subject.random();
-  Finding finding = Finding::passed("no allocation, no lock, no system call");
+  Finding finding = Finding::passed("no allocation, no system call");
   call_in_many_ways(
       subject, some_trials(subject, random), random, [&](const Trial& trial, const Values& inputs, const Call& way) {
         if (finding.verdict != Verdict::pass) return;
@@ -112,14 +107,9 @@ Finding quiet(const Subject& subject) {
         while (!watch.done) std::this_thread::yield();
         if (watch.allocations != 0) {
           finding = Finding::at_most(static_cast<double>(watch.allocations), 0, "allocations of one call of compute");
-        } else if (watch.locks != 0) {
-          finding = Finding::at_most(static_cast<double>(watch.locks), 0, "locks taken by one call");
-        } else if (watch.clock_reads != 0) {
-          finding = Finding::failed("compute reads the clock");
         } else if (!watch.trapped || process_counts == nullptr) {
-          finding =
-              Finding::warned(watch.trapped ? "no system call; allocations are not counted in this build"
-                                            : "no allocation, no lock; this kernel does not let us watch system calls");
+          finding = Finding::warned(watch.trapped ? "no system call; allocations are not counted in this build"
+                                                  : "no allocation; this kernel does not let us watch system calls");
         }
       });
   return finding;
@@ -190,6 +180,7 @@ class BareModel {
 
 Finding system_calls(const Subject& subject) {
   BareModel model(subject);
+  std::setvbuf(stdout, nullptr, _IONBF, 0);  // what is printed is a system call at once
   bool trapped = false, done = false;
   const char* now = "";
   std::thread([&] {
@@ -205,45 +196,67 @@ Finding system_calls(const Subject& subject) {
   return Finding::passed("loading, opening, creating and destroying ask the kernel for memory alone");
 }
 
-/// Runs what was registered for the end of the program, in a process of its own. Ends this one when that found
-/// something.
-std::string at_the_end(const Subject& subject) {
+/// What calls change in the process without a system call, or with one that memory and locks need, too.
+class ProcessTraces {
+ public:
+  ProcessTraces() {
+    of_the_c_library();  // seeds
+    random_ = of_the_c_library().first;
+  }
+
+  /// "the environment"; empty: nothing.
+  [[nodiscard]] std::string found() const {
+    auto changed = state_.restore();
+    const auto now = of_the_c_library();
+    if (now.first != random_) changed.emplace_back("the C library's random numbers");
+    if (now.second != buffer_) changed.emplace_back("how standard output is buffered");
+    return changed.empty() ? "" : listed(changed);
+  }
+
+ private:
+  /// The next of the random numbers, which begin anew, and the buffer of standard output.
+  static std::pair<long, const void*> of_the_c_library() {
+    constexpr unsigned seed = 20;
+    const long next = random() ^ lrand48();
+    srandom(seed);
+    srand48(seed);
+    return {next, stdout->_IO_buf_base};
+  }
+
+  plugin::ProcessState state_;
+  long random_ = 0;
+  const void* buffer_ = stdout->_IO_buf_base;
+};
+
+/// Runs what was registered for the end of the program, in a process of its own. Ends this one when that found something.
+void end_of_program(const Subject& subject) {
   const pid_t child = fork();
   if (child == 0) {
     const ForeignCall mark(subject.manifest().id.c_str(), "that runs when the program ends");
-    limit_system_calls(Allowed::all_but_exit);  // findings are of this process now
     limit_system_calls(Allowed::memory);
     end_in_order();
   }
   int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) != child) return {};
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 1) end_process(1);  // it has sent its finding
-  return status == 0 ? "" : "another end of the program";
+  if (child > 0 && waitpid(child, &status, 0) == child && status != 0) end_process(1);  // it has sent its finding
 }
 
 Finding traces(const Subject& subject) {
   BareModel model(subject);
   const ProcessTraces traces;
-  const auto left_by = [&](const std::string& name) -> std::string {
-    const auto found = traces.found();
-    return found.empty() ? "" : name + ' ' + listed(found);
-  };
   for (const auto& [name, function] : BareModel::steps) {
     (model.*function)();
-    if (const std::string words = left_by(name); !words.empty()) return Finding::failed(words);
+    if (const std::string words = traces.found(); !words.empty()) return Finding::failed(name + (" changes " + words));
   }
   Random random = subject.random();
-  const std::vector<Trial> trials = some_trials(subject, random);
-  std::string left;
-  call_in_many_ways(subject, trials, random, [&](const Trial& trial, const Values& inputs, const Call& call) {
-    if (left.empty()) std::thread([&] { compute(subject, trial.instance, inputs, call); }).join();
-    if (left.empty()) left = left_by("compute");
-  });
-  if (!left.empty()) return Finding::failed(left);
-  if (const std::string words = at_the_end(subject); !words.empty()) return Finding::failed("makes " + words);
-  if (const std::string words = left_by("what runs when the program ends"); !words.empty())
-    return Finding::failed(words);
-  return Finding::passed("leaves nothing behind: no thread, process, open file, text, other setting of the process");
+  std::string words;
+  call_in_many_ways(subject, some_trials(subject, random), random,
+                    [&](const Trial& trial, const Values& inputs, const Call& call) {
+                      compute(subject, trial.instance, inputs, call);
+                      if (words.empty()) words = traces.found();
+                    });
+  if (!words.empty()) return Finding::failed("compute changes " + words);
+  end_of_program(subject);
+  return Finding::passed("leaves nothing behind: no random number drawn, no other setting of the process");
 }
 
 Finding memory(const Subject& subject) {
@@ -289,30 +302,18 @@ std::string difference(const std::string& a, const std::string& b) {
 }
 
 Finding surroundings(const Subject& subject) {
-  const std::string here = outputs_of_process(subject, 0);
-  std::string there = outputs_of_process(subject, world::all);
+  const std::string here = outputs_of_process(subject, World::here);
   // Where a library lies is drawn at random: one draw may agree with the fixed place in the bits that a plugin uses.
   constexpr int draws = 3;
-  for (int k = 0; k < draws && here == there; ++k) there = outputs_of_process(subject, world::addresses);
-  for (const std::string& text : {here, there}) {
-    if (const auto finding = nlohmann::json::parse(text, nullptr, false); finding.is_object())
-      return finding_from(finding);
-    if (text.starts_with('!')) {
-      return Finding::failed("asks for the environment variable " + text.substr(1) +
-                             "; what it gives must not depend on it");
+  for (int k = 0; k < draws; ++k) {
+    const std::string there = outputs_of_process(subject, World::there);
+    for (const std::string& text : {here, there}) {
+      if (const auto finding = nlohmann::json::parse(text, nullptr, false); finding.is_object())
+        return finding_from(finding);
     }
+    if (here != there) return Finding::failed(difference(here, there) + "; other are " + what_differs);
   }
-  if (here == there) return Finding::passed("the same bits in processes with other surroundings");
-  std::vector<std::string> reasons;
-  for (const auto& [other, name] :
-       {std::pair{world::memory, "what was in new memory or on the stack before"},
-        std::pair{world::addresses, "addresses"}, std::pair{world::clock, "the clock"},
-        std::pair{world::environment, "the environment"}, std::pair{world::folder, "the working directory or mask"},
-        std::pair{world::processor, "the thread or its processor"}}) {
-    if (outputs_of_process(subject, other) != here) reasons.emplace_back(name);
-  }
-  if (reasons.empty() || reasons.size() > 3 || outputs_of_process(subject, 0) != here) reasons = {"the process"};
-  return Finding::failed("depends on " + listed(reasons) + ": " + difference(here, there));
+  return Finding::passed("the same bits in processes with other surroundings");
 }
 
 }  // namespace
@@ -320,13 +321,13 @@ Finding surroundings(const Subject& subject) {
 std::vector<Check> isolation_checks() {
   const Level level = Level::robustness;
   return {
-      {"quiet", level, "computes without allocation, lock, input or output", {"fuzz", "outputs-optional"}, quiet},
+      {"quiet", level, "computes without allocation, input or output", {"fuzz", "outputs-optional"}, quiet},
       {"system-calls",
        level,
-       "makes only harmless system calls while it is loaded and created",
+       "asks the kernel for memory alone while it is loaded and created",
        {"compute", "parameters"},
        system_calls},
-      {"traces", level, "leaves nothing behind in the process", {"quiet", "system-calls"}, traces},
+      {"traces", level, "leaves no other setting behind in the process", {"quiet", "system-calls"}, traces},
       {"memory",
        level,
        "does not change its own memory while it computes",

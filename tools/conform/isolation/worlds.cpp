@@ -2,7 +2,6 @@
 
 #include <sched.h>
 #include <sys/personality.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,12 +10,12 @@
 #include <thread>
 #include <vector>
 
-#include "allocation_count.hpp"
 #include "base/process.hpp"
 #include "base/text.hpp"
 #include "conform/call.hpp"
 #include "conform/checks/trials.hpp"
 #include "conform/report_line.hpp"
+#include "counted_functions.hpp"
 
 namespace rouleau::conform {
 
@@ -70,10 +69,14 @@ std::string outputs(const Subject& subject, int fill) {
 
 }  // namespace
 
-void enter_world(unsigned other, int count, char** words) {
-  // Where the dynamic loader and the units' table are found stays, and so does what a run notes.
-  std::vector<std::string> variables = {"PATH=/usr/bin:/bin", "HOME=/", "LANG=C", "TZ=UTC0"};
-  if ((other & world::environment) != 0) {
+const char* to_string(World world) { return world == World::here ? "here" : "there"; }
+
+World world_named(const std::string& name) { return name == "here" ? World::here : World::there; }
+
+void enter_world(World world, int count, char** words) {
+  const bool other = world == World::there;
+  std::vector<std::string> variables = {"PATH=/usr/bin:/bin", "HOME=/"};
+  if (other) {
     variables = {"PATH=/usr/local/bin:/usr/bin:/bin",
                  "HOME=/nonexistent",
                  "USER=somebody",
@@ -81,36 +84,25 @@ void enter_world(unsigned other, int count, char** words) {
                  "LC_ALL=de_DE.UTF-8",
                  "TZ=Pacific/Kiritimati",
                  "OMP_NUM_THREADS=7",
-                 "PWD=/usr",
                  "TMPDIR=/var/tmp",
-                 "TERM=dumb",
-                 "DEBUG=1",
                  "PADDING=" + std::string(3000, 'x')};
   }
+  // Where the dynamic loader and the units' table are found stays, and so does what a run notes.
   for (const char* kept : {"LD_LIBRARY_PATH", "UDUNITS2_XML_PATH", "ROULEAU_INSTRUCTION_SET"}) {
     if (const char* value = std::getenv(kept)) variables.push_back(std::string(kept) + '=' + value);
   }
-  const bool elsewhere = (other & world::folder) != 0;
-  ::umask(elsewhere ? 077 : 022);
-  if (::chdir(elsewhere ? "/usr" : "/") != 0) return;
+  ::umask(other ? 077 : 022);
+  if (::chdir(other ? "/usr" : "/") != 0) return;
   cpu_set_t processors;
   sched_getaffinity(0, sizeof processors, &processors);
   int wanted = -1;
   for (int k = 0; k < CPU_SETSIZE; ++k) {
-    if (CPU_ISSET(k, &processors) && (wanted < 0 || (other & world::processor) != 0)) wanted = k;
+    if (CPU_ISSET(k, &processors) && (wanted < 0 || other)) wanted = k;
   }
   CPU_ZERO(&processors);
   CPU_SET(wanted, &processors);
   sched_setaffinity(0, sizeof processors, &processors);
-  if ((other & world::addresses) != 0) {
-    personality(ADDR_COMPAT_LAYOUT);
-    rlimit stack{};
-    getrlimit(RLIMIT_STACK, &stack);
-    stack.rlim_cur = std::min<rlim_t>(stack.rlim_max, rlim_t{48} << 20);
-    setrlimit(RLIMIT_STACK, &stack);
-  } else {
-    personality(ADDR_NO_RANDOMIZE);
-  }
+  personality(other ? ADDR_COMPAT_LAYOUT : ADDR_NO_RANDOMIZE);
   std::vector<char*> all(words, words + count), entries;
   std::string entered = "entered";
   all.push_back(entered.data());
@@ -120,32 +112,29 @@ void enter_world(unsigned other, int count, char** words) {
   execve("/proc/self/exe", all.data(), entries.data());
 }
 
-std::string outputs_in_world(const Subject& subject, unsigned other) {
-  const int fill = (other & world::memory) != 0 ? 0xff : 0;
+std::string outputs_in_world(const Subject& subject, World world) {
+  const bool other = world == World::there;
+  const int fill = other ? 0xff : 0;
   if (process_counts != nullptr) {
-    process_counts->fill = fill;
     constexpr std::int64_t days = 86400;
-    if ((other & world::clock) != 0) process_counts->clock_ahead_s = 400 * days + 12345;
-    if ((other & world::environment) != 0) process_counts->variable = "1";
+    process_counts->fill = fill;
+    if (other) process_counts->clock_ahead_s = 400 * days + 12345;
+    if (other) process_counts->variable = "1";
   }
+  if (!other) return outputs(subject, fill);
   std::string lines;
-  if ((other & world::processor) != 0)
-    std::thread([&] { lines = outputs(subject, fill); }).join();
-  else
-    lines = outputs(subject, fill);
-  if (process_counts != nullptr && process_counts->asked[0] != '\0') return std::string("!") + process_counts->asked;
+  std::thread([&] { lines = outputs(subject, fill); }).join();
   return lines;
 }
 
-std::string outputs_of_process(const Subject& subject, unsigned other) {
+std::string outputs_of_process(const Subject& subject, World world) {
   constexpr double time_limit_s = 60;
   const std::string manifest = std::filesystem::absolute(subject.manifest().file).string();
-  const ProcessEnd end = run_process("/proc/self/exe",
-                                     {manifest, "surroundings", std::to_string(subject.seed()),
-                                      std::to_string(subject.dimension()), std::to_string(other)},
-                                     time_limit_s);
-  if (end.signal == 0 && end.exit_code == 0 && !end.timed_out) return end.finding;
-  if (end.finding.starts_with('{')) return end.finding;
+  const ProcessEnd end = run_process(
+      "/proc/self/exe",
+      {manifest, "surroundings", std::to_string(subject.seed()), std::to_string(subject.dimension()), to_string(world)},
+      time_limit_s);
+  if (!end.finding.empty() && !end.timed_out) return end.finding;
   return to_json({Verdict::crash, "the process ends in other surroundings", {}, {}}).dump();
 }
 

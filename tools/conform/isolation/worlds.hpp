@@ -1,4 +1,4 @@
-// Surroundings of the same call that a model must not notice, each in a process of its own.
+// Surroundings of the same call that a model must not notice: a process of its own, and one in which all else is other.
 #pragma once
 
 #include <string>
@@ -7,19 +7,24 @@
 
 namespace rouleau::conform {
 
-/// What is other in a world, as bits of a number.
-namespace world {
-inline constexpr unsigned memory = 1, addresses = 2, clock = 4, environment = 8, folder = 16, processor = 32, all = 63;
-}
+enum class World { here, there };
+/// As the word of a command line.
+const char* to_string(World world);
+World world_named(const std::string& name);
+
+/// What differs between the two.
+inline constexpr const char* what_differs =
+    "what was in new memory or on the stack, addresses, the date, the environment, the working directory and mask, the "
+    "thread and its processor";
 
 /// Becomes this program again, with the same words and one more, in that world. Returns where the kernel refuses.
-void enter_world(unsigned other, int count, char** words);
+void enter_world(World world, int count, char** words);
 
 /// What the model gives in the world that was entered, a number a line with its name; lines "# with ..." say for which
-/// parameters. "!name" alone is a variable of the environment that it has asked for.
-std::string outputs_in_world(const Subject& subject, unsigned other);
+/// parameters.
+std::string outputs_in_world(const Subject& subject, World world);
 
 /// The same from a process of its own; a JSON finding instead when that process ended in another way.
-std::string outputs_of_process(const Subject& subject, unsigned other);
+std::string outputs_of_process(const Subject& subject, World world);
 
 }  // namespace rouleau::conform
