@@ -228,7 +228,8 @@ class ProcessTraces {
   const void* buffer_ = stdout->_IO_buf_base;
 };
 
-/// Runs what was registered for the end of the program, in a process of its own. Ends this one when that found something.
+/// Runs what was registered for the end of the program, in a process of its own. Ends this one when that found
+/// something.
 void end_of_program(const Subject& subject) {
   const pid_t child = fork();
   if (child == 0) {

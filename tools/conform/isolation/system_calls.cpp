@@ -30,11 +30,11 @@ constexpr std::array named_calls = {
 #define NAMED(call) \
   std::pair<long, const char*> { SYS_##call, #call }
     // clang-format off
-    NAMED(read), NAMED(write), NAMED(writev), NAMED(openat), NAMED(close), NAMED(lseek), NAMED(newfstatat), NAMED(ioctl),
-    NAMED(getcwd), NAMED(chdir), NAMED(unlinkat), NAMED(mkdirat), NAMED(dup3), NAMED(pipe2), NAMED(mmap), NAMED(munmap),
-    NAMED(mprotect), NAMED(brk), NAMED(futex), NAMED(socket), NAMED(clone), NAMED(clone3), NAMED(execve), NAMED(exit_group),
-    NAMED(kill), NAMED(tgkill), NAMED(prctl), NAMED(umask), NAMED(prlimit64), NAMED(rt_sigaction), NAMED(clock_gettime),
-    NAMED(clock_nanosleep), NAMED(sched_yield), NAMED(getrandom), NAMED(getpid),
+    NAMED(read), NAMED(write), NAMED(writev), NAMED(openat), NAMED(close), NAMED(lseek), NAMED(newfstatat),
+    NAMED(ioctl), NAMED(getcwd), NAMED(chdir), NAMED(unlinkat), NAMED(mkdirat), NAMED(dup3), NAMED(pipe2), NAMED(mmap),
+    NAMED(munmap), NAMED(mprotect), NAMED(brk), NAMED(futex), NAMED(socket), NAMED(clone), NAMED(clone3), NAMED(execve),
+    NAMED(exit_group), NAMED(kill), NAMED(tgkill), NAMED(prctl), NAMED(umask), NAMED(prlimit64), NAMED(rt_sigaction),
+    NAMED(clock_gettime), NAMED(clock_nanosleep), NAMED(sched_yield), NAMED(getrandom), NAMED(getpid),
 #undef NAMED
     // clang-format on
 };

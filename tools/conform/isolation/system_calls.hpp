@@ -39,8 +39,8 @@ enum class Allowed {
   nothing,  ///< nothing else
 };
 
-/// From here another system call of the calling thread becomes a finding that names it, and the model's function that is
-/// being called, and the process ends. Writing a finding and end_process() stay allowed. False as install().
+/// From here another system call of the calling thread becomes a finding that names it, and the model's function that
+/// is being called, and the process ends. Writing a finding and end_process() stay allowed. False as install().
 bool limit_system_calls(Allowed allowed);
 
 /// Ends the process where a model's code may not. At once, or, `in_order`, as std::exit(0) does.
