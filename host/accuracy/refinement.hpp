@@ -5,7 +5,7 @@
 
 #include "error_bars.hpp"
 #include "json/json.hpp"
-#include "plan/numerics_auto.hpp"
+#include "plan/numerics_choice.hpp"
 
 namespace rouleau::accuracy {
 

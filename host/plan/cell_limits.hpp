@@ -1,4 +1,5 @@
-// The limits that cells bring in: how far the fluid gives way to them, how stiff they are, what acts between them, where they lie.
+// The limits that cells bring in: how far the fluid gives way to them, how stiff they are, what acts between them,
+// where they lie.
 #pragma once
 
 #include <string>
@@ -39,8 +40,8 @@ struct LimitedStage {
   RemediedBy density;        ///< nothing where the scene gives the stage a factor, which is not auto's to change
 };
 
-/// Whether a run is about when things happen, which is late by as much as the flow: cells that turn over or meet others. A round
-/// cell alone becomes steady and forgets its start. `auto` is told which.
+/// Whether a run is about when things happen, which is late by as much as the flow: cells that turn over or meet
+/// others. A round cell alone becomes steady and forgets its start. `auto` is told which.
 bool reports_moments(const Plan& plan);
 
 void add_compression(const LimitedStage& of, LimitList& limits);

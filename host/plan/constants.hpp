@@ -68,7 +68,8 @@ struct KernelFacts {
   double first_moment;   ///< largest |sum w (x - X)|, spacings
   double stretch_limit;  ///< largest stretching stiffness with explicit coupling over that of peskin4
   double bending_limit;  ///< the same for bending stiffness
-  /// Relaxation time from which on the semi-implicit step bears more; `nowhere`: it bears half as much as the explicit one.
+  /// Relaxation time from which on the semi-implicit step bears more; `nowhere`: it bears half as much as the explicit
+  /// one.
   double semi_implicit_from;
   const char* defect;  ///< what a user has to expect, for `plan`; empty: nothing
 };
@@ -78,7 +79,8 @@ const KernelFacts& kernel_named(const std::string& name);
 // ---- cells in contact ----
 /// Deepest well between cells, over bending modulus / radius^2, without a potential within membranes [deep wells].
 constexpr double deepest_well_of_bare_cells(int dimension) { return dimension == 2 ? 40 : 250; }
-/// Deepest well, over the stretching modulus, with which "auto" takes the slip correction in two dimensions [deep wells].
+/// Deepest well, over the stretching modulus, with which "auto" takes the slip correction in two dimensions [deep
+/// wells].
 inline constexpr double deepest_corrected_well = 0.02;
 inline constexpr double narrowest_well = 0.5;             ///< spacings [narrow wells]
 inline constexpr double narrowest_well_of_a_wall = 0.25;  ///< spacings [narrow wells]

@@ -17,8 +17,8 @@ struct MembraneScheme {
 };
 MembraneScheme membrane_scheme(const Plan& plan);
 
-/// Seconds of one step on one core, as measured with AVX-512 (docs/performance.md, docs/three-dimensions.md); other machines differ
-/// by their memory and vector width.
+/// Seconds of one step on one core, as measured with AVX-512 (docs/performance.md, docs/three-dimensions.md); other
+/// machines differ by their memory and vector width.
 double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension = 2,
                  const MembraneScheme& scheme = {});
 

@@ -131,8 +131,8 @@ MembraneFacts membrane_facts(const Models& models, std::size_t type, const scene
   return facts;
 }
 
-/// Of a cell type in a stage, what limits it: the stretching and the bending stiffness that are nearest to their limits, and
-/// the longest mean.
+/// Of a cell type in a stage, what limits it: the stretching and the bending stiffness that are nearest to their
+/// limits, and the longest mean.
 void add_coupling(const Models& models, std::size_t type, double spacing, const TypeFacts& of_type, ModelFacts& facts) {
   const scene::Scene& scene = *models.scene;
   const scene::CellType& cell = scene.cell_types[type];

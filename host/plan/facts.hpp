@@ -45,11 +45,11 @@ struct ModelFacts {
   double cutoff = 0;                                      ///< largest, between cells and within them
   Bounded stretching, bending;                            ///< of the cell type that is nearest to its limit
   double steps_of_mean = 0;  ///< over which a semi-implicit step holds forces; in three dimensions
-  /// Variance over which slip is spread along a membrane, over the radius squared; in two dimensions, of cells that are not
-  /// round. By the stretching stiffness alone; the bending of a red cell would add less than 2 %.
+  /// Variance over which slip is spread along a membrane, over the radius squared; in two dimensions, of cells that are
+  /// not round. By the stretching stiffness alone; the bending of a red cell would add less than 2 %.
   double slip_smoothing = 0;
-  /// Relative change of the content of a cell whose membrane is stretched from the start: the tension T over the radius a is
-  /// a pressure (twice that of a sphere), and density deviates by three times the pressure.
+  /// Relative change of the content of a cell whose membrane is stretched from the start: the tension T over the radius
+  /// a is a pressure (twice that of a sphere), and density deviates by three times the pressure.
   double prestress_compression = 0;
 };
 
@@ -62,7 +62,8 @@ struct StageFacts {
   bool follows_cells = false;
 };
 
-/// Where the force changes its sign (m), energy per area (J/m2), depth over strongest attraction (m); NaN without a well.
+/// Where the force changes its sign (m), energy per area (J/m2), depth over strongest attraction (m); NaN without a
+/// well.
 struct WellInSi {
   double distance = std::numeric_limits<double>::quiet_NaN(), depth = distance, width = distance;
   [[nodiscard]] bool attracts() const { return !std::isnan(depth); }
@@ -106,8 +107,8 @@ std::vector<std::array<std::string, 2>> attracting_types(const Models& models,
 /// there is no interaction or all that there are have a state.
 double deepest_well(const Models& models, const std::vector<InteractionWell>& wells);
 
-/// Depth of a well (lattice units) over bending modulus / radius^2 in a stage, the largest of the two types that it holds
-/// together and that have no potential within their membranes. 0 where there is nothing to say.
+/// Depth of a well (lattice units) over bending modulus / radius^2 in a stage, the largest of the two types that it
+/// holds together and that have no potential within their membranes. 0 where there is nothing to say.
 double depth_over_bending(const Models& models, const Facts& facts, const scene::StageSetting& stage,
                           const scene::Interaction& interaction, double depth);
 

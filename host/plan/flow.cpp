@@ -27,8 +27,8 @@ bool driven_alike(const scene::Stage& a, const scene::Stage& b) {
 
 }  // namespace
 
-// Between walls that move the n-th mode has amplitude 2 (-1)^n and T/n^2, and delay = T pi^2/6; the flow rate of a channel has modes
-// of amplitude 96/(pi n)^4 with odd n and T/n^2, and delay = T pi^2/10.
+// Between walls that move the n-th mode has amplitude 2 (-1)^n and T/n^2, and delay = T pi^2/6; the flow rate of a
+// channel has modes of amplitude 96/(pi n)^4 with odd n and T/n^2, and delay = T pi^2/10.
 double FlowStart::decay() const { return delay * (driven ? 10 : 6) / square_of_pi; }
 
 double FlowStart::rate_at(double strain) const {

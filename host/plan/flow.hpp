@@ -5,7 +5,8 @@
 
 namespace rouleau::plan {
 
-/// A flow that starts at rest, in strains: its shear rate g(s) over that of the developed flow is 1 - A exp(-s/T) in the end.
+/// A flow that starts at rest, in strains: its shear rate g(s) over that of the developed flow is 1 - A exp(-s/T) in
+/// the end.
 struct FlowStart {
   double delay = 0;     ///< by which everything is late for good, the integral of 1 - g; 0: nothing to say
   bool driven = false;  ///< by a force rather than by walls
@@ -29,9 +30,10 @@ FlowStart flow_start(const scene::Scene& scene, int index);
 /// angles of the boundary integrals in tests/reference/capsule_channel.json, where tan(2 angle) = 1/relaxation.
 double capsule_relaxation(double capillary_number, double viscosity_ratio);
 
-/// How far a round capsule that has been started with the flow is from one in the developed flow after this strain, relative
-/// to the latter's deformation. Both obey dz/ds = -z/relaxation + i g z + g/relaxation, where |z| is the deformation over
-/// a constant and arg z twice the angle: small deformations that relax, are turned by the vorticity and made by the shear.
+/// How far a round capsule that has been started with the flow is from one in the developed flow after this strain,
+/// relative to the latter's deformation. Both obey dz/ds = -z/relaxation + i g z + g/relaxation, where |z| is the
+/// deformation over a constant and arg z twice the angle: small deformations that relax, are turned by the vorticity
+/// and made by the shear.
 double capsule_left(const FlowStart& start, double relaxation, double strain);
 
 /// Without u.grad u the fluid's unsteady term depends on the frame it is seen from: a cell that travels at U in that
@@ -44,17 +46,16 @@ struct CellTravel {
 /// None without cells and where convective inertia is kept.
 CellTravel cell_travel(const scene::Scene& scene, const scene::StageSetting& stage);
 
-/// The fluid is computed in a frame that moves with the cells where these travel together. Otherwise a capsule drifts across
-/// a shear flow in proportion to the mean, by 0.87 of its radius within a strain of 8 at a mean of 2 (docs/rheology.md): the
-/// threshold allows 0.001.
-/// Not in three dimensions, whose fluid has no such frame.
+/// The fluid is computed in a frame that moves with the cells where these travel together. Otherwise a capsule drifts
+/// across a shear flow in proportion to the mean, by 0.87 of its radius within a strain of 8 at a mean of 2
+/// (docs/rheology.md): the threshold allows 0.001. Not in three dimensions, whose fluid has no such frame.
 bool follows_cells(const scene::Scene& scene, const scene::StageSetting& stage);
 
 /// Largest speed of the developed flow between walls at rest, lattice units.
 double fastest_driven_speed(const scene::StageSetting& stage, const scene::Scene& scene);
 
-/// A force across walls is held by a pressure, the force times half of the distance from wall to wall: what that makes of a cell
-/// at a wall, relative change of its content.
+/// A force across walls is held by a pressure, the force times half of the distance from wall to wall: what that makes
+/// of a cell at a wall, relative change of its content.
 double compression_by_held_force(const scene::StageSetting& stage, const scene::Scene& scene);
 
 }  // namespace rouleau::plan

@@ -11,8 +11,8 @@ namespace rouleau::plan {
 
 struct Plan;
 
-/// The share of its content by which a cell is compressed where the flow shears it: viscosity times shear rate presses on it,
-/// and the lattice's fluid gives way. Lattice units.
+/// The share of its content by which a cell is compressed where the flow shears it: viscosity times shear rate presses
+/// on it, and the lattice's fluid gives way. Lattice units.
 constexpr double compression_by_shear(double tau, double shear_rate) {
   return compression_by_rate * (tau - 0.5) * shear_rate;
 }

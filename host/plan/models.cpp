@@ -153,7 +153,8 @@ void find_models(Models& models, const plugin::Catalog& catalog, Faults& faults)
   }
 }
 
-/// A stage makes its models anew where its units are its own, and has a row of the conversions for each of their parameters.
+/// A stage makes its models anew where its units are its own, and has a row of the conversions for each of their
+/// parameters.
 void check_models_of_stages(const scene::Scene& scene) {
   constexpr std::size_t most = 100'000;
   std::size_t models = 1 + scene.interactions.size();

@@ -1,4 +1,5 @@
-// The models that a scene names: chosen from a catalog, held against what the scene asks of them, made once for each stage.
+// The models that a scene names: chosen from a catalog, held against what the scene asks of them, made once for each
+// stage.
 #pragma once
 
 #include <memory>
@@ -49,8 +50,8 @@ struct Models {
   [[nodiscard]] std::string owner_of(const PlannedModel& model) const;
 };
 
-/// Finds the models and resolves their parameters, and converts the stages; nothing is made yet. Adds what is wrong: a model
-/// that is not known, a parameter, what the scene asks of a model and its manifest does not give.
+/// Finds the models and resolves their parameters, and converts the stages; nothing is made yet. Adds what is wrong: a
+/// model that is not known, a parameter, what the scene asks of a model and its manifest does not give.
 Models choose_models(const scene::Scene& scene, const plugin::Catalog& catalog, Faults& faults);
 
 /// Makes every active model. Throws Error(bad_input) with the place in the scene of what a model refuses,
@@ -60,8 +61,8 @@ void make_models(Models& models);
 /// A potential with other parameters than the scene's (SI, in its manifest's order), for stage 0.
 core::Potential make_potential(const Models& models, const PlannedModel& model, const std::vector<double>& values);
 
-/// Adds what is wrong with the models that a scene names, known or unknown, and their parameters. The scene may be one that
-/// could not be read whole; `faults` has why.
+/// Adds what is wrong with the models that a scene names, known or unknown, and their parameters. The scene may be one
+/// that could not be read whole; `faults` has why.
 void find_model_faults(const scene::Scene& scene, const plugin::Catalog& catalog, Faults& faults);
 
 }  // namespace rouleau::plan

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "error_model.hpp"
 #include "json/json.hpp"
 
 namespace rouleau::plan {
@@ -37,6 +41,19 @@ struct NumericsChoice {
     return std::any_of(values.begin(), values.end(),
                        [&](const ChosenValue& value) { return value.pointer == pointer; });
   }
+};
+
+/// What the limits of a plan ask for beyond the target error, and what only a plan knows, for it has opened the
+/// plugins.
+struct NumericsBounds {
+  std::map<std::size_t, double> most_density_factor = {};  ///< by stage
+  /// By stage and relaxation time. The explicit step bears stiffness by the square of tau - 1/2, so that what is too
+  /// much at one may do at another.
+  std::map<std::pair<std::size_t, double>, double> most_density_factor_at = {};
+  double least_radius = 0;  ///< of the smallest cell, lattice spacings; errors want more
+  bool slip_correction = true;
+  std::optional<RecoveryRates> recovery = {};
+  bool operator==(const NumericsBounds&) const = default;
 };
 
 /// Null where nothing was left open.

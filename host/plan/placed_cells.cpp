@@ -15,9 +15,9 @@
 #include "core/contact/cell_grid.hpp"
 #include "core/contact/crossing.hpp"
 #include "core/membrane/geometry.hpp"
-#include "crowding.hpp"
 #include "estimate.hpp"
 #include "scene/cell_table.hpp"
+#include "shape/crowding.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
 #include "shape/surface.hpp"
@@ -278,7 +278,7 @@ void require_room(const scene::Scene& scene) {
 void require_distance(const scene::Scene& scene) {
   constexpr std::size_t many = 10'000;
   if (scene.cells.size() < many) return;
-  const auto pair = find_crowded_pair(scene);
+  const auto pair = shape::find_crowded_pair(scene);
   if (!pair) return;
   const auto name = [&](int cell) {
     return "cell " + std::to_string(cell) + " (" + scene::origin_of(scene.cells[cell]) + ")";

@@ -24,8 +24,8 @@ using Cells = std::conditional_t<D == 2, core::Membranes, core::Surfaces>;
 template <int D>
 void for_each_cell(const scene::Scene& scene, double spacing,
                    const std::function<void(std::size_t c, const Cells<D>& cell)>& function);
-/// All cells on the scene's own lattice, unchecked, of which those alone take memory that are `known`; the others' nodes are
-/// anywhere.
+/// All cells on the scene's own lattice, unchecked, of which those alone take memory that are `known`; the others'
+/// nodes are anywhere.
 template <int D>
 Cells<D> make_known_cells(const scene::Scene& scene, const std::function<bool(int cell)>& known);
 /// Either, on the scene's own lattice.

@@ -15,8 +15,8 @@ namespace rouleau::plan {
 
 using scene::lattice_domain, scene::lattice_spacing, scene::StageSetting;
 
-/// All that a run needs: its models, what is known of them, what was decided. What it will cost, what is left out and what to be
-/// wary of is in a PlanReport.
+/// All that a run needs: its models, what is known of them, what was decided. What it will cost, what is left out and
+/// what to be wary of is in a PlanReport.
 struct Plan : Models {
   Facts facts = {};
   std::optional<NumericsChoice> numerics_choice = {};  ///< none where the scene pins all of its numerics
@@ -31,10 +31,10 @@ std::vector<std::string> code_of_the_scene(const Plan& plan);
 /// Whether the semi-implicit step bears more than the explicit one with the scene's kernel, at its relaxation time.
 bool semi_implicit_gains(const scene::Scene& scene);
 
-/// Makes every active model for every stage, so that a plan never promises a run that cannot start. Throws Error(bad_input) with
-/// the place in the scene of what cannot be computed or a model refuses, Error(plugin_refused) for a library that is
-/// refused. The scene and the catalog must outlive the plan; `choice` is what read_within_limits() has put into the
-/// scene.
+/// Makes every active model for every stage, so that a plan never promises a run that cannot start. Throws
+/// Error(bad_input) with the place in the scene of what cannot be computed or a model refuses, Error(plugin_refused)
+/// for a library that is refused. The scene and the catalog must outlive the plan; `choice` is what
+/// read_within_limits() has put into the scene.
 Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::optional<NumericsChoice> choice = {});
 
 }  // namespace rouleau::plan

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "conversions.hpp"
 #include "estimate.hpp"
 #include "json/json.hpp"
 #include "limits.hpp"
@@ -24,15 +25,6 @@ struct PlannedPass {
 struct Omission {
   std::string what, why;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(Omission, what, why)
-};
-
-/// A quantity in a stage, in SI and in lattice units; `of`: a cell type or two, empty for the fluid.
-struct Conversion {
-  std::string stage, quantity, of;
-  double si;
-  std::string unit;
-  double lattice;
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(Conversion, stage, quantity, of, si, unit, lattice)
 };
 
 /// What became of an entry with "random".

@@ -9,6 +9,7 @@
 #include "constants.hpp"
 #include "json/document.hpp"
 #include "limits.hpp"
+#include "numerics_auto.hpp"
 #include "plan.hpp"
 #include "scene/named_files.hpp"
 #include "shape/outline.hpp"
@@ -73,13 +74,17 @@ void pin_files(json::Document& document) {
   }
 }
 
-/// Faults are added; with some, the scene is what could be read.
-ReadScene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                              const NumericsBounds& bounds, Faults& faults) {
-  auto document = std::make_shared<json::Document>(scene::read_document(file, overrides, faults));
+/// A scene's file, read once. Faults are added.
+OpenScene read_file(const std::filesystem::path& file, const std::vector<std::string>& overrides, Faults& faults) {
+  json::Document document = scene::read_document(file, overrides, faults);
+  if (faults.empty()) faults.attempt([&] { pin_files(document); });
+  return {std::move(document), faults};
+}
+
+/// The scene with all values. Faults are added; with some, it is what could be read.
+ReadScene completed(const OpenScene& open, const NumericsBounds& bounds, Faults& faults) {
   std::optional<NumericsChoice> choice;
-  if (faults.empty()) faults.attempt([&] { pin_files(*document); });
-  if (faults.empty()) faults.attempt([&] { choice = fill_in_numerics(*document, bounds); });
+  auto document = std::make_shared<json::Document>(open.filled_in(bounds, choice));
   ReadScene read{scene::read_scene(std::move(document), faults), std::move(choice)};
   if (faults.empty()) faults.attempt([&] { shape::add_random_cells(read.scene); });
   return read;
@@ -87,10 +92,9 @@ ReadScene read_unpacked_scene(const std::filesystem::path& file, const std::vect
 
 }  // namespace
 
-ReadScene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides,
-                              const NumericsBounds& bounds) {
+ReadScene read_unpacked_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   Faults faults;
-  ReadScene read = read_unpacked_scene(file, overrides, bounds, faults);
+  ReadScene read = completed(read_file(file, overrides, faults), {}, faults);
   faults.raise();
   return read;
 }
@@ -106,7 +110,8 @@ ReadScene read_within_limits(const std::filesystem::path& file, const std::vecto
                              const shape::PackingWatch& watch) {
   NumericsBounds bounds;
   Faults faults;
-  ReadScene read = read_unpacked_scene(file, overrides, bounds, faults);
+  const OpenScene open = read_file(file, overrides, faults);
+  ReadScene read = completed(open, bounds, faults);
   if (!faults.empty()) {
     faults.attempt([&] { find_model_faults(read.scene, catalog_of(read.scene), faults); });
     faults.raise();
@@ -120,7 +125,8 @@ ReadScene read_within_limits(const std::filesystem::path& file, const std::vecto
     const NumericsBounds tighter = tightened(bounds, make_plan(read.scene, catalog, read.numerics_choice));
     if (tighter == bounds) return false;
     bounds = tighter;
-    read = read_unpacked_scene(file, overrides, bounds);
+    read = completed(open, bounds, faults);
+    faults.raise();
     return true;
   };
   for (int packed = 0; packed < most_packings; ++packed) {

@@ -32,8 +32,8 @@ std::vector<core::Layer> lattice_layers(const Scene& scene);
 double fluid_nodes(const Domain& domain);
 
 inline constexpr int most_coarse_rows = 4096;
-/// The coarsest lattice with the same spacing along all sides, at least four nodes each; none where their ratios are not those of
-/// whole numbers, up to most_coarse_rows along y, or where it would have more nodes than can be computed.
+/// The coarsest lattice with the same spacing along all sides, at least four nodes each; none where their ratios are
+/// not those of whole numbers, up to most_coarse_rows along y, or where it would have more nodes than can be computed.
 std::optional<LatticeSize> coarsest_lattice(const Vector& sides);
 /// A lattice with so many times as many nodes along each side; none where that are more than can be computed.
 std::optional<LatticeSize> refined(LatticeSize nodes, int factor);

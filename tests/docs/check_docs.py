@@ -197,6 +197,12 @@ class Documentation(unittest.TestCase):
                     self.assertTrue(there, f"{path.relative_to(SOURCE)} names {name}")
         self.assertGreater(named, 20)
 
+    def test_every_number_of_a_plan_says_where_it_is_from(self):
+        table = (SOURCE / "host/plan/constants.hpp").read_text()
+        page = (SOURCE / "docs/results/plan-constants.md").read_text()
+        named = set(re.findall(r"\[([A-Za-z-]+(?: [a-z-]+)*)\]", table))
+        self.assertEqual(named, set(re.findall(r"^## (.*)$", page, re.M)))
+
     def test_every_link_leads_somewhere(self):
         anchors = {page: {slug(re.sub(r"[`*]|\]\([^)]*\)|\[", "", title)) for title in re.findall(r"^#+ (.*)$", text, re.MULTILINE)}
                    for page, text in TEXTS.items()}

@@ -1,5 +1,5 @@
 // Cells on top of each other are found by their centres alone, across periodic borders too.
-#include "plan/crowding.hpp"
+#include "shape/crowding.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -53,7 +53,7 @@ TEST_CASE("a crowded pair is found where there is one, and only there") {
     for (std::size_t a = 0; a < scene.cells.size(); ++a) {
       for (std::size_t b = a + 1; b < scene.cells.size(); ++b) any = any || is_crowded(scene, a, b);
     }
-    const auto pair = plan::find_crowded_pair(scene);
+    const auto pair = shape::find_crowded_pair(scene);
     REQUIRE(pair.has_value() == any);
     if (pair) CHECK(is_crowded(scene, static_cast<std::size_t>(pair->cell), static_cast<std::size_t>(pair->other)));
     (any ? crowded : apart) += 1;

@@ -5,7 +5,7 @@
 
 #include "scene/scene.hpp"
 
-namespace rouleau::plan {
+namespace rouleau::shape {
 
 struct CrowdedPair {
   int cell, other;  ///< indices into Scene::cells
@@ -16,4 +16,4 @@ struct CrowdedPair {
 /// for the centres alone, so that a million cells on top of each other are found at once.
 std::optional<CrowdedPair> find_crowded_pair(const scene::Scene& scene);
 
-}  // namespace rouleau::plan
+}  // namespace rouleau::shape

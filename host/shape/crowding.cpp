@@ -5,15 +5,15 @@
 #include <tuple>
 #include <vector>
 
-#include "shape/outline.hpp"
+#include "outline.hpp"
 
-namespace rouleau::plan {
+namespace rouleau::shape {
 
 namespace {
 
 /// Radius of the largest circle around the centre of a cell that lies within its outline.
 double inner_radius(const scene::CellType& type) {
-  const auto nodes = shape::make_outline(type.shape, type.segments).nodes;
+  const auto nodes = make_outline(type.shape, type.segments).nodes;
   double least = nodes.front().norm();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const Eigen::Vector2d& from = nodes[i];
@@ -24,8 +24,8 @@ double inner_radius(const scene::CellType& type) {
   return least;
 }
 
-/// A cell by the bin that its centre lies in. Bins are as wide as two of the largest circles, so that cells whose circles
-/// overlap lie in the same bin or in neighbours.
+/// A cell by the bin that its centre lies in. Bins are as wide as two of the largest circles, so that cells whose
+/// circles overlap lie in the same bin or in neighbours.
 struct Binned {
   long column, row;
   int cell;
@@ -105,4 +105,4 @@ std::optional<CrowdedPair> find_crowded_pair(const scene::Scene& scene) {
   return Bins(scene).find_pair();
 }
 
-}  // namespace rouleau::plan
+}  // namespace rouleau::shape
