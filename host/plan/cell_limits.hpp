@@ -5,27 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "limits.hpp"
+#include "limit_list.hpp"
 #include "plan.hpp"
 
 namespace rouleau::plan {
-
-/// Values against limits, of one stage after the other.
-class LimitList {
- public:
-  void begin_stage(int stage) { stage_ = stage; }
-  /// A value that must stay below its limit, or above. One that is not finite is none.
-  void below(const std::string& name, double value, double limit, const std::string& remedy,
-             RemediedBy remedied_by = RemediedBy::nothing, double power_of_density = 1);
-  void above(const std::string& name, double value, double limit, const std::string& remedy,
-             RemediedBy remedied_by = RemediedBy::nothing);
-  /// Sharpest first.
-  [[nodiscard]] std::vector<Limit> sorted() &&;
-
- private:
-  int stage_ = 0;
-  std::vector<Limit> limits_;
-};
 
 /// What the limits of a stage are found from.
 struct LimitedStage {

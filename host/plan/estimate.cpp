@@ -8,8 +8,8 @@
 #include "base/process.hpp"
 #include "base/text.hpp"
 #include "constants.hpp"
-#include "output_schedule.hpp"
 #include "scene/lattice.hpp"
+#include "scene/output_schedule.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
 
@@ -23,7 +23,7 @@ struct Counts {
 };
 
 Counts count_outputs(const scene::Scene& scene, const scene::StageSetting& stage) {
-  const OutputSchedule cells(scene.output.cells, stage, true), fields(scene.output.fields, stage, false);
+  const scene::OutputSchedule cells(scene.output.cells, stage, true), fields(scene.output.fields, stage, false);
   constexpr int most = 20000;
   Counts counts;
   long step = 0;
@@ -51,7 +51,8 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<scen
     estimate.field_outputs += counts.fields;
   }
   ++estimate.outputs;  // the first state
-  if (!stages.empty() && OutputSchedule(scene.output.fields, stages.front(), false).due(0)) ++estimate.field_outputs;
+  if (!stages.empty() && scene::OutputSchedule(scene.output.fields, stages.front(), false).due(0))
+    ++estimate.field_outputs;
 
   const auto cells = static_cast<double>(scene.cells.size());
   const double membrane = membrane_nodes(scene);

@@ -8,7 +8,8 @@
 #include "constants.hpp"
 #include "estimate.hpp"
 #include "flow.hpp"
-#include "limits.hpp"
+#include "limit_list.hpp"
+#include "scene/scene_reader.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
 

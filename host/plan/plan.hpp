@@ -13,8 +13,6 @@
 
 namespace rouleau::plan {
 
-using scene::lattice_domain, scene::lattice_spacing, scene::StageSetting;
-
 /// All that a run needs: its models, what is known of them, what was decided. What it will cost, what is left out and
 /// what to be wary of is in a PlanReport.
 struct Plan : Models {

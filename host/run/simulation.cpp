@@ -16,10 +16,10 @@
 #include "monitor/energy_check.hpp"
 #include "monitor/node_checks.hpp"
 #include "monitor/state_checks.hpp"
-#include "plan/output_schedule.hpp"
 #include "progress.hpp"
 #include "provenance.hpp"
 #include "run_state.hpp"
+#include "scene/output_schedule.hpp"
 #include "stage_course.hpp"
 #include "stepper.hpp"
 
@@ -331,7 +331,7 @@ class Simulation final : StepHooks {
   }
 
   struct Stage {
-    plan::OutputSchedule cells, fields;
+    scene::OutputSchedule cells, fields;
     Ending due = Ending::none;    ///< what ends it before the next step
     Ending ended = Ending::none;  ///< what has ended it
   };

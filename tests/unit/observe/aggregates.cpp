@@ -10,7 +10,7 @@
 #include "core/contact/surface_contacts.hpp"
 #include "core/contact/surface_crossing.hpp"
 #include "core/membrane/geometry.hpp"
-#include "plan/output_schedule.hpp"
+#include "scene/output_schedule.hpp"
 #include "shape/surface.hpp"
 #include "unit/periodic_box.hpp"
 
@@ -195,14 +195,14 @@ TEST_CASE("an output is due at the steps nearest to multiples of its interval") 
   setting.shear_rate = 0.003;
   setting.units = {1e-7, 1e-5, 1};
   setting.max_steps = 100000;
-  const OutputSchedule schedule({0.25, std::nullopt}, setting, true);
+  const scene::OutputSchedule schedule({0.25, std::nullopt}, setting, true);
   long count = 0;
   for (long step = 0; step <= 8333; ++step) count += schedule.due(step) ? 1 : 0;
   CHECK(count == 101);  // strain 0 to 25 in steps of a quarter
   CHECK(schedule.due(83));
   CHECK_FALSE(schedule.due(84));
   CHECK(schedule.due(167));
-  const OutputSchedule never({}, setting, true);
+  const scene::OutputSchedule never({}, setting, true);
   CHECK_FALSE(never.due(0));
 }
 
@@ -210,7 +210,7 @@ TEST_CASE("a stage at rest writes forty rows where only a strain is asked for") 
   scene::StageSetting setting{};
   setting.units = {1e-7, 1e-5, 1};
   setting.max_steps = 4000;
-  const OutputSchedule schedule({0.25, std::nullopt}, setting, true);
+  const scene::OutputSchedule schedule({0.25, std::nullopt}, setting, true);
   long count = 0;
   for (long step = 0; step <= 4000; ++step) count += schedule.due(step) ? 1 : 0;
   CHECK(count == 41);

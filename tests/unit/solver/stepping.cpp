@@ -5,9 +5,9 @@
 
 #include "core/solver/barrier.hpp"
 #include "core/solver/solver.hpp"
-#include "plan/output_schedule.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/handles.hpp"
+#include "scene/output_schedule.hpp"
 
 using namespace rouleau;
 using namespace rouleau::plan;
@@ -23,7 +23,7 @@ TEST_CASE("the next step of a schedule is the first one that is due") {
   const double interval = GENERATE(1.0, 1.4, 1.5, 2.5, 7.3, 100.0);
   cadence.seconds = interval;
   if (interval == 7.3) cadence.strain = 4.9;
-  const OutputSchedule schedule(cadence, setting, true);
+  const scene::OutputSchedule schedule(cadence, setting, true);
   long next = schedule.next(0);
   for (long step = 1; step < 1000; ++step) {
     CAPTURE(interval, step);
@@ -35,7 +35,7 @@ TEST_CASE("the next step of a schedule is the first one that is due") {
 TEST_CASE("a schedule without an interval is never due again") {
   scene::StageSetting setting{};
   setting.max_steps = 1000;
-  CHECK(OutputSchedule(Cadence{}, setting, true).next(0) == std::numeric_limits<long>::max());
+  CHECK(scene::OutputSchedule(Cadence{}, setting, true).next(0) == std::numeric_limits<long>::max());
 }
 
 TEST_CASE("nobody leaves a barrier before all have come") {

@@ -6,14 +6,14 @@
 #include <limits>
 #include <vector>
 
-#include "scene/stage_scales.hpp"
+#include "stage_scales.hpp"
 
-namespace rouleau::plan {
+namespace rouleau::scene {
 
 /// Says at which steps of a stage an output is due: the steps nearest to multiples of an interval, and the first.
 class OutputSchedule {
  public:
-  OutputSchedule(const scene::Cadence& cadence, const scene::StageSetting& setting, bool always_some) {
+  OutputSchedule(const Cadence& cadence, const StageSetting& setting, bool always_some) {
     if (cadence.strain && setting.shear_rate != 0 && !setting.oscillation.any())
       intervals_.push_back(*cadence.strain / std::abs(setting.shear_rate));
     if (cadence.seconds) intervals_.push_back(setting.steps_of(*cadence.seconds));
@@ -48,4 +48,4 @@ class OutputSchedule {
   std::vector<double> intervals_;  ///< steps
 };
 
-}  // namespace rouleau::plan
+}  // namespace rouleau::scene
