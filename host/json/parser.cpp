@@ -47,8 +47,8 @@ class Reader final : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
 
-  bool parse_error(std::size_t consumed, const std::string&, const nlohmann::detail::exception& error) override {
-    throw syntax_fault(text_, error.what(), consumed, opened(), pointer());
+  bool parse_error(std::size_t consumed, const std::string& token, const nlohmann::detail::exception& error) override {
+    throw syntax_fault(text_, error.what(), consumed, token.size(), opened(), pointer());
   }
 
  private:
