@@ -31,7 +31,7 @@ UNITS_IN_CIRCLES = {"scene": 2}
 LONG_LINES = 374
 LONG_FUNCTIONS = {"accuracy/companions": 103, "core/fluid/energetics": 130, "observe/observables": 183,
                   "report/report_data": 105}
-LONG_UNITS = {"core/coupling/surface_coupling": 520, "core/fluid/fluid": 988,
+LONG_UNITS = {"core/fluid/fluid": 988,
               "core/solver/cell_exchange": 524, "hdf5/hdf5_file": 588, "observe/observables": 596,
               "run/checkpoint": 454, "run/simulation": 669,
               "scene/scene": 706, "shape/rigid_surface": 451}

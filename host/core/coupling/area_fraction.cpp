@@ -1,15 +1,11 @@
-#include "area_fraction.hpp"
-
 #include <algorithm>
 
-#include "core/membrane/geometry.hpp"
+#include "cell_fraction.hpp"
 #include "core/membrane/rounding.hpp"
 
 namespace rouleau::core {
 
 namespace {
-
-constexpr int window_margin = 2;
 
 /// Adds what one edge contributes to the columns right of it in one row. `a` and `b` are where it enters and leaves the
 /// row, `rise` its signed height there. After a sum along the row, an element holds the area right of the edge.
@@ -39,23 +35,11 @@ void add_piece(double* row, int& begin, int& end, double a, double b, double ris
 
 }  // namespace
 
-void cover(const Membranes& membranes, const CellRange& cell, AreaFraction& fraction) {
-  const BoundingBox<2> box = box_of<2>(membranes, cell);
-  fraction.width = fraction.height = 0;
-  if (!box.usable()) return;
-  // Node n's unit square is [n - 1/2, n + 1/2]: half a spacing later, it is the cell between two integers.
-  fraction.x0 = core::floor_int(box.least[0] + 0.5) - window_margin;
-  fraction.y0 = core::floor_int(box.least[1] + 0.5) - window_margin;
-  const int width = core::floor_int(box.most[0] + 0.5) - fraction.x0 + 1 + window_margin;
-  const int height = core::floor_int(box.most[1] + 0.5) - fraction.y0 + 1 + window_margin;
-  if (static_cast<double>(width) * height > 1e8) return;  // blown up, see BoundingBox::usable
-  fraction.width = width;
-  fraction.height = height;
-  fraction.value.assign(static_cast<std::size_t>(width) * height, 0.0);
-  fraction.begin.assign(static_cast<std::size_t>(height), width);
-  fraction.end.assign(static_cast<std::size_t>(height), 0);
-
-  const double shift_x = 0.5 - fraction.x0, shift_y = 0.5 - fraction.y0;
+void cover(const Membranes& membranes, int cell_number, CellFraction<2>& fraction) {
+  if (!clear_around(box_of<2>(membranes, cell_number), fraction)) return;
+  const CellRange& cell = membranes.cells[cell_number];
+  // Half a spacing later, a node's unit square is the one between two integers.
+  const double shift_x = 0.5 - fraction.first[0], shift_y = 0.5 - fraction.first[1];
   const double *xs = membranes.position[0].data(), *ys = membranes.position[1].data();
   for (int i = cell.first; i < cell.end(); ++i) {
     const int j = cell.next(i);
@@ -80,7 +64,7 @@ void cover(const Membranes& membranes, const CellRange& cell, AreaFraction& frac
       y = next_y;
     }
   }
-  for (int r = 0; r < height; ++r) {
+  for (int r = 0; r < fraction.row_count(); ++r) {
     const int begin = fraction.begin[r], end = fraction.end[r];
     if (begin >= end) {
       fraction.begin[r] = fraction.end[r] = 0;
@@ -90,43 +74,6 @@ void cover(const Membranes& membranes, const CellRange& cell, AreaFraction& frac
     double sum = 0;
     for (int c = begin; c < end; ++c) row[c] = sum += row[c];
     row[end] = 0;  // left and right edges cancel there, up to rounding
-  }
-}
-
-void smooth(AreaFraction& fraction, std::vector<double>& scratch) {
-  const int width = fraction.width, height = fraction.height;
-  if (width == 0) return;
-  scratch.assign(fraction.value.size(), 0.0);
-  for (int r = 0; r < height; ++r) {
-    const double* from = fraction.row(r);
-    double* to = scratch.data() + static_cast<std::size_t>(r) * width;
-    for (int c = 1; c < width - 1; ++c) to[c] = 0.25 * (from[c - 1] + from[c + 1]) + 0.5 * from[c];
-  }
-  for (int r = 1; r < height - 1; ++r) {
-    const double *below = scratch.data() + static_cast<std::size_t>(r - 1) * width, *here = below + width,
-                 *above = here + width;
-    double* to = fraction.row(r);
-    for (int c = 0; c < width; ++c) to[c] = 0.25 * (below[c] + above[c]) + 0.5 * here[c];
-  }
-  // Rows and columns that are not zero grow by one on every side.
-  const std::vector<int>& old_begin = fraction.begin;
-  const std::vector<int>& old_end = fraction.end;
-  int begin_before = 0, end_before = 0;  // of row r - 1, before it was changed
-  for (int r = 0; r < height; ++r) {
-    int begin = width, end = 0;
-    const auto include = [&](int b, int e) {
-      if (b >= e) return;
-      begin = std::min(begin, b - 1);
-      end = std::max(end, e + 1);
-    };
-    const auto at = static_cast<std::size_t>(r);
-    include(begin_before, end_before);
-    include(old_begin[at], old_end[at]);
-    if (r + 1 < height) include(old_begin[at + 1], old_end[at + 1]);
-    begin_before = old_begin[at];
-    end_before = old_end[at];
-    fraction.begin[at] = begin < end ? begin : 0;
-    fraction.end[at] = begin < end ? end : 0;
   }
 }
 

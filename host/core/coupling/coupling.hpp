@@ -8,60 +8,82 @@
 #include "base/worker.hpp"
 #include "core/domain/domain.hpp"
 #include "core/fluid/field.hpp"
+#include "core/fluid/solid_nodes.hpp"
 #include "core/fluid/walls.hpp"
-#include "core/membrane/membranes.hpp"
+#include "core/surface/surfaces.hpp"
 #include "kernel_kind.hpp"
 
 namespace rouleau::core {
 
-/// Immersed-boundary coupling. Forces go to the nodes of the lattice that a stencil's are images of; velocities are read
-/// from the halo, too, two nodes wide, which the fluid fills.
-template <class T>
+template <class T, int D>
+struct StencilLoops;
+
+/// Immersed-boundary coupling. Rows lie along x, as row_of() counts them in the block. Forces go to the nodes of the
+/// lattice that a stencil's are images of; velocities are read from the halo, too, which the fluid fills.
+template <class T, int D>
 class Coupling {
  public:
-  Coupling(KernelKind kernel, const Domain<2>& domain);
+  /// A number along each axis, of all nodes.
+  using Vectors = std::array<const double*, D>;
+
+  Coupling(KernelKind kernel, const Domain<D>& domain);
 
   /// Makes room for these nodes; to be called once, before the first locate().
-  void reserve(const Membranes& membranes);
+  void reserve(const Cells<D>& cells);
 
   /// Pass over cells: weights for these positions, the membranes' own or where a correction puts their forces.
-  void locate(Worker worker, const Membranes& membranes, NodeVectors position, Whose whose = Whose::own);
-  /// Pass over rows of the block: adds the forces of all nodes to the force density there. The sums do not depend on how
+  void locate(Worker worker, const Cells<D>& cells, const Vectors& positions, Whose whose = Whose::own);
+  /// Pass over rows of the block: adds these forces of all nodes to the force density there. The sums do not depend on how
   /// rows are shared out, nor on the block.
-  void spread(Range rows, const Membranes& membranes, NodeVectors node_force, VectorField<T, 2>& force) const;
-  /// Pass over cells: sets velocity_x and velocity_y of the nodes whose base node lies in the block, of cells that reach it.
-  void interpolate(Worker worker, Membranes& membranes, const VectorField<T, 2>& velocity,
-                   Whose whose = Whose::own) const;
+  void spread(Range rows, const Cells<D>& cells, const Vectors& forces, VectorField<T, D>& force) const;
+  /// Pass over cells: sets the velocities of the nodes whose base node lies in the block, of cells that reach it.
+  void interpolate(Worker worker, Cells<D>& cells, const VectorField<T, D>& velocity, Whose whose = Whose::own) const;
 
   /// What of these forces of this rank's cells acts on walls and not on the fluid, of all ranks together. Not a pass.
-  [[nodiscard]] WallForces<2> wall_share(const Membranes& membranes, NodeVectors force, const Ranks<2>& ranks) const;
+  /// `solid`: walls of any shape; null: none.
+  [[nodiscard]] WallForces<D> wall_share(const Cells<D>& cells, const Vectors& force, const SolidNodes<D>* solid,
+                                         const Ranks<D>& ranks) const;
 
   /// The node of the lattice below a membrane node: that of the block which computes its velocity.
-  [[nodiscard]] std::array<int, 2> base(int node) const { return {column_[node], std::max(row_[node], 0)}; }
+  [[nodiscard]] std::array<int, D> base(int node) const {
+    std::array<int, D> below;
+    for (int k = 0; k < D; ++k) below[k] = std::max(base_[k][node], 0);
+    return below;
+  }
 
   /// First node whose stencil left the lattice or whose position is not a number at the last locate(); -1: none.
   /// Such a node neither spreads nor is moved.
-  [[nodiscard]] int escaped(const Membranes& membranes) const;
-  [[nodiscard]] bool any_escaped(const Membranes& membranes) const;
+  [[nodiscard]] int escaped(const Cells<D>& cells) const;
+  [[nodiscard]] bool any_escaped(const Cells<D>& cells) const;
   /// Takes no memory for these nodes until they are located again.
   void forget(std::span<const Range> nodes);
 
  private:
-  struct Loops;
+  /// From where node 0 of the lattice would lie in a field to the block's first node.
+  [[nodiscard]] std::ptrdiff_t first_of_block(const Field<T, D>& field) const {
+    std::ptrdiff_t first = 0;
+    for (int k = 0; k < D; ++k) first += domain_.block.begin[k] * field.stride(k);
+    return first;
+  }
+  /// Sets what tasks of all loops have: stencils, and strides of the fields.
+  template <class Task>
+  void describe(Task& task, const VectorField<T, D>& fields) const;
   /// Reads what spreading will read of a cell.
-  void warm(const CellRange& cell, NodeVectors vectors) const;
+  void warm(const CellRange& cell, const Vectors& vectors) const;
 
-  const Loops* loops_;
-  Domain<2> domain_;
-  PagedArray<int> column_, row_;         // base node of the lattice; row `outside` for an escaped node
-  PagedArray<T> p_x_, q_x_, p_y_, q_y_;  // what is kept of the weights (kernel.hpp)
-  struct BaseRows {
+  const StencilLoops<T, D>* loops_;
+  Domain<D> domain_;
+  std::array<PagedArray<int>, D> base_;  // base node of the lattice; `outside` along the last axis of an escaped node
+  std::array<PagedArray<T>, D> p_, q_;   // what is kept of the weights (kernel.hpp)
+  struct BaseRange {
     int lowest, highest;
   };
-  std::vector<BaseRows> rows_;  // of each located cell's nodes; the lowest is `outside` if one has escaped
+  std::vector<BaseRange> bases_;  // of each located cell's nodes along the last axis; `outside` if one has escaped
 };
 
-extern template class Coupling<float>;
-extern template class Coupling<double>;
+extern template class Coupling<float, 2>;
+extern template class Coupling<double, 2>;
+extern template class Coupling<float, 3>;
+extern template class Coupling<double, 3>;
 
 }  // namespace rouleau::core

@@ -37,9 +37,9 @@ class SlipCorrection {
   [[nodiscard]] std::vector<NodeMobility> mobility() const;
   /// Takes no memory for these nodes until they are measured again.
   void forget(std::span<const Range> nodes);
-  [[nodiscard]] NodeVectors positions() const { return {touch_x_.data(), touch_y_.data()}; }
+  [[nodiscard]] std::array<const double*, 2> positions() const { return {touch_x_.data(), touch_y_.data()}; }
   [[nodiscard]] std::array<double*, 2> forces_of_all() { return {force_x_.data(), force_y_.data()}; }
-  [[nodiscard]] NodeVectors forces() const { return {force_x_.data(), force_y_.data()}; }
+  [[nodiscard]] std::array<const double*, 2> forces() const { return {force_x_.data(), force_y_.data()}; }
 
  private:
   template <class Loop>

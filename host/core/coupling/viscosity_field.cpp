@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/fluid/layers.hpp"
-#include "core/membrane/geometry.hpp"
 #include "core/membrane/rounding.hpp"
 #include "disjoint.hpp"
 
@@ -15,12 +14,17 @@ namespace {
 /// Nodes may move this far before the next update; the marks allow for a whole spacing.
 constexpr double displacement_limit = 0.1;
 
+template <class Interval>
+void include(Interval& to, int begin, int end) {
+  to = {std::min(to.begin, begin), std::max(to.end, end)};
+}
+
 }  // namespace
 
-template <class T>
-ViscosityField<T>::ViscosityField(const Membranes& membranes, std::vector<double> viscosity_ratio, ViscosityMean mean,
-                                  double reach_beyond, double relaxation_rate, const Domain<2>& domain,
-                                  std::vector<double> viscosity_of_rows, bool smoothed)
+template <class T, int D>
+ViscosityField<T, D>::ViscosityField(const Cells<D>& cells, std::vector<double> viscosity_ratio, ViscosityMean mean,
+                                     double reach_beyond, double relaxation_rate, const Domain<D>& domain,
+                                     std::vector<double> viscosity_of_rows, bool smoothed)
     : ratio_(std::move(viscosity_ratio)),
       mean_(mean),
       smoothed_(smoothed),
@@ -28,24 +32,39 @@ ViscosityField<T>::ViscosityField(const Membranes& membranes, std::vector<double
       plain_rate_(relaxation_rate),
       viscosity_of_rows_(std::move(viscosity_of_rows)),
       domain_(domain),
-      watch_(membranes),
-      cells_(membranes.cells.size()),
-      changed_(static_cast<std::size_t>(domain.block.size(1))) {
-  for (const CellRange& cell : membranes.cells) varies_ |= differs(cell.type);
+      watch_(cells),
+      reach_(cells.cells.size()),
+      changed_(static_cast<std::size_t>(row_count(domain.block))) {
+  for (const CellRange& cell : cells.cells) varies_ |= differs(cell.type);
 }
 
-template <class T>
+template <class T, int D>
 template <class Function>
-void ViscosityField<T>::for_rows(const Rows& rows, Range own, Function function) const {
-  for (std::size_t k = 0; k < rows.columns.size(); ++k) {
-    const int row = domain_.wrapped(1, rows.first + static_cast<int>(k)), y = row - domain_.block.begin[1];
-    if (row >= 0 && y >= own.begin && y < own.end) function(y, rows.columns[k], static_cast<int>(k));
+void ViscosityField<T, D>::for_rows(const Rows& rows, Range own, Function function) const {
+  const Box<D>& block = domain_.block;
+  const int count = static_cast<int>(rows.columns.size());
+  for (int place = 0; place < count;) {
+    // A line of rows along y, whose place along z is one.
+    const int length = rows.size[0];
+    int before = 0;  // rows of the block below the line
+    if constexpr (D == 3) {
+      const int z = domain_.wrapped(2, rows.first[1] + place / length) - block.begin[2];
+      if (z < 0 || z >= block.size(2)) {
+        place += length;
+        continue;
+      }
+      before = block.size(1) * z;
+    }
+    for (int j = 0; j < length; ++j, ++place) {
+      const int y = domain_.wrapped(1, rows.first[0] + j) - block.begin[1], row = before + y;
+      if (y >= 0 && y < block.size(1) && row >= own.begin && row < own.end) function(row, rows.columns[place], place);
+    }
   }
 }
 
-template <class T>
+template <class T, int D>
 template <class Function>
-void ViscosityField<T>::for_pieces(Interval columns, Function function) const {
+void ViscosityField<T, D>::for_pieces(Interval columns, Function function) const {
   for (int begin = columns.begin; begin < columns.end;) {
     const int x = domain_.wrapped(0, begin);
     const int end = std::min(columns.end, begin + domain_.size[0] - x);
@@ -55,159 +74,171 @@ void ViscosityField<T>::for_pieces(Interval columns, Function function) const {
   }
 }
 
-template <class T>
-void ViscosityField<T>::cover(Worker worker, const Membranes& membranes) {
-  const CellNumbers cells = membranes.known_cells(worker);
+template <class T, int D>
+void ViscosityField<T, D>::cover(Worker worker, const Cells<D>& cells) {
   std::vector<double> scratch;
-  for (const int c : cells) {
+  for (const int c : cells.known_cells(worker)) {
     if (!watch_.moved(c)) continue;
-    const CellRange& cell = membranes.cells[c];
-    Reach& reach = cells_[c];
+    Reach& reach = reach_[c];
     std::swap(reach.covered, reach.covered_before);
     reach.covered.columns.clear();
-    if (differs(cell.type)) {
-      AreaFraction& fraction = reach.fraction;
-      core::cover(membranes, cell, fraction);
-      if (smoothed_) smooth(fraction, scratch);
-      reach.covered.first = fraction.y0;
-      for (int j = 0; j < fraction.height; ++j) {
-        const auto at = static_cast<std::size_t>(j);
-        reach.covered.columns.push_back({fraction.x0 + fraction.begin[at], fraction.x0 + fraction.end[at]});
-      }
+    if (differs(cells.cells[c].type)) {
+      core::cover(cells, c, reach.fraction);
+      if (smoothed_) smooth(reach.fraction, scratch);
+      find_covered(reach.fraction, reach.covered);
     }
-    find_reach(membranes, cell, reach);
-    watch_.remember(c, membranes, displacement_limit);
+    find_reached(cells, c, reach);
+    watch_.remember(c, cells, displacement_limit);
   }
 }
 
-// A node at (X, Y) reaches columns floor(X) - 1 ... floor(X) + 2 and the same rows; one more each for its motion, and
-// the margin.
-template <class T>
-void ViscosityField<T>::find_reach(const Membranes& membranes, const CellRange& cell, Reach& reach) const {
+template <class T, int D>
+void ViscosityField<T, D>::find_covered(const CellFraction<D>& fraction, Rows& covered) const {
+  for (int k = 1; k < D; ++k) covered.first[k - 1] = fraction.first[k], covered.size[k - 1] = fraction.size[k];
+  for (int r = 0; r < fraction.row_count(); ++r)
+    covered.columns.push_back({fraction.first[0] + fraction.begin[r], fraction.first[0] + fraction.end[r]});
+}
+
+// A node at (X, Y) reaches columns floor(X) - 1 ... floor(X) + 2 and the same rows, along z, too; one more each for its
+// motion, and the margin.
+template <class T, int D>
+void ViscosityField<T, D>::find_reached(const Cells<D>& cells, int cell, Reach& reach) const {
   Rows& reached = reach.reached;
   reached.columns.clear();
-  const BoundingBox<2> box = box_of<2>(membranes, cell);
+  const BoundingBox<D> box = box_of<D>(cells, cell);
   if (!box.usable()) return;
-  const Rows& covered = reach.covered;
-  int first = core::floor_int(box.least[1]) - 2 - margin_, last = core::floor_int(box.most[1]) + 3 + margin_;
-  if (!covered.columns.empty()) {
-    first = std::min(first, covered.first);
-    last = std::max(last, covered.first + static_cast<int>(covered.columns.size()) - 1);
+  std::size_t count = 1;
+  for (int k = 1; k < D; ++k) {
+    reached.first[k - 1] = floor_int(box.least[k]) - 2 - margin_;
+    reached.size[k - 1] = floor_int(box.most[k]) + 4 + margin_ - reached.first[k - 1];
+    count *= static_cast<std::size_t>(reached.size[k - 1]);
   }
-  const auto rows = static_cast<std::size_t>(last - first + 1);
   const Interval none{1 << 30, -(1 << 30)};
-  const auto include = [](Interval& to, int begin, int end) {
-    to = {std::min(to.begin, begin), std::max(to.end, end)};
-  };
-  std::vector<Interval> columns(rows, none);  // of the nodes between this row and the next
-  for (int i = cell.first; i < cell.end(); ++i) {
-    const int x = core::floor_int(membranes.position[0][i]);
-    const int y = core::floor_int(membranes.position[1][i]);
-    include(columns[y - first], x - 2 - margin_, x + 4 + margin_);
+  reached.columns.assign(count, none);
+  const CellRange& range = cells.cells[cell];
+  for (int i = range.first; i < range.end(); ++i) {
+    const int x = floor_int(cells.position[0][i]);
+    int place = 0;
+    for (int k = D - 1; k > 0; --k)
+      place = place * reached.size[k - 1] + floor_int(cells.position[k][i]) - reached.first[k - 1];
+    include(reached.columns[place], x - 2 - margin_, x + 4 + margin_);
   }
-  reached.first = first;
-  reached.columns.assign(rows, none);
-  for (int r = 0; r < static_cast<int>(rows); ++r) {
-    Interval& to = reached.columns[r];
-    for (int k = std::max(0, r - 3 - margin_); k <= std::min(static_cast<int>(rows) - 1, r + 2 + margin_); ++k) {
-      include(to, columns[k].begin, columns[k].end);
+  // From the row below a node to the rows that its stencil reaches, along one axis and then the other.
+  int stride = 1;
+  for (int k = 0; k < D - 1; ++k) {
+    const std::vector<Interval> before = reached.columns;
+    const int size = reached.size[k];
+    for (int r = 0; r < static_cast<int>(count); ++r) {
+      const int at = r / stride % size;
+      for (int from = std::max(0, at - 3 - margin_); from <= std::min(size - 1, at + 2 + margin_); ++from) {
+        const Interval& columns = before[r + (from - at) * stride];
+        include(reached.columns[r], columns.begin, columns.end);
+      }
     }
+    stride *= size;
   }
-  for (std::size_t j = 0; j < covered.columns.size(); ++j) {
-    const Interval& added = covered.columns[j];
+  const Rows& covered = reach.covered;
+  for (int r = 0; r < static_cast<int>(covered.columns.size()); ++r) {
+    const Interval& added = covered.columns[r];
     if (added.begin >= added.end) continue;
-    include(reached.columns[static_cast<std::size_t>(covered.first - first) + j], added.begin, added.end);
+    int place = covered.first[0] - reached.first[0] + r % covered.size[0];
+    if constexpr (D == 3) place += (covered.first[1] - reached.first[1] + r / covered.size[0]) * reached.size[0];
+    include(reached.columns[place], added.begin, added.end);
   }
 }
 
-template <class T>
-void ViscosityField<T>::update(Worker worker, const Membranes& membranes, Field<T, 2>& relaxation_rate,
-                               NodeMask& mask) {
-  const Range own = worker.share(domain_.block.size(1));
+template <class T, int D>
+void ViscosityField<T, D>::update(Worker worker, const Cells<D>& cells, Field<T, D>& relaxation_rate, NodeMask& mask) {
+  const Range own = worker.share(row_count(domain_.block));
   if (varies_) {
-    collect_changes(membranes, own);
-    set_rates(membranes, own, relaxation_rate);
+    collect_changes(cells, own);
+    set_rates(cells, own, relaxation_rate);
   }
   mask.clear(own.begin, own.end);
-  for (const int c : membranes.known_cells()) {
-    if (!membranes.reaches(c)) continue;
-    const Reach& reach = cells_[c];
-    for_rows(reach.reached, own, [&](int y, Interval columns, int) { mask.mark(y, columns.begin, columns.end); });
+  for (const int c : cells.known_cells()) {
+    if (!cells.reaches(c)) continue;
+    for_rows(reach_[c].reached, own, [&](int row, Interval columns, int) {
+      if (columns.begin < columns.end) mask.mark(row, columns.begin, columns.end);
+    });
   }
 }
 
-template <class T>
-void ViscosityField<T>::restore(DisplacementWatch::Memory memory, Membranes& membranes, Field<T, 2>& relaxation_rate,
-                                NodeMask& mask) {
-  watch_.recall(std::move(memory), membranes, [&] {
-    cover(Worker{}, membranes);
-    update(Worker{}, membranes, relaxation_rate, mask);
+template <class T, int D>
+void ViscosityField<T, D>::restore(DisplacementWatch::Memory memory, Cells<D>& cells, Field<T, D>& relaxation_rate,
+                                   NodeMask& mask) {
+  watch_.recall(std::move(memory), cells, [&] {
+    cover(Worker{}, cells);
+    update(Worker{}, cells, relaxation_rate, mask);
   });
 }
 
-template <class T>
-void ViscosityField<T>::collect_changes(const Membranes& membranes, Range own) {
-  for (int y = own.begin; y < own.end; ++y) changed_[y].clear();
-  const auto include = [&](int y, Interval columns, int) {
+template <class T, int D>
+void ViscosityField<T, D>::collect_changes(const Cells<D>& cells, Range own) {
+  for (int row = own.begin; row < own.end; ++row) changed_[row].clear();
+  const auto include_columns = [&](int row, Interval columns, int) {
     columns.end = std::min(columns.end, columns.begin + domain_.size[0]);
     for_pieces(columns, [&](int x, int begin, int end) {
       // Intervals of a row stay disjoint, since what is done to them is not to be done twice.
-      add_disjoint(changed_[y], {x, x + end - begin});
+      add_disjoint(changed_[row], {x, x + end - begin});
     });
   };
-  for (const int c : membranes.known_cells()) {
+  for (const int c : cells.known_cells()) {
     if (!watch_.moved(c)) continue;
-    for_rows(cells_[c].covered_before, own, include);
-    for_rows(cells_[c].covered, own, include);
+    for_rows(reach_[c].covered_before, own, include_columns);
+    for_rows(reach_[c].covered, own, include_columns);
   }
 }
 
-template <class T>
-void ViscosityField<T>::set_rates(const Membranes& membranes, Range own, Field<T, 2>& rate) {
+template <class T, int D>
+void ViscosityField<T, D>::set_rates(const Cells<D>& cells, Range own, Field<T, D>& rate) {
   const bool harmonic = mean_ == ViscosityMean::harmonic;
   const auto averaged = [=](double viscosity) { return harmonic ? 1 / viscosity : viscosity; };
+  const auto row_at = [&](int row) { return rate.row(row_of(domain_.block, row)); };
   // The field holds the sum over cells of (mu_inside - mu_row) I, or that of 1/mu, until every cell has been added.
-  for (int y = own.begin; y < own.end; ++y) {
-    for (const Interval& interval : changed_[y])
-      std::fill(rate.row(y) + interval.begin, rate.row(y) + interval.end, T(0));
+  for (int row = own.begin; row < own.end; ++row) {
+    for (const Interval& interval : changed_[row])
+      std::fill(row_at(row) + interval.begin, row_at(row) + interval.end, T(0));
   }
-  for (const int c : membranes.known_cells()) {
-    const int type = membranes.cells[c].type;
-    if (!differs(type) || !membranes.reaches(c)) continue;
+  for (const int c : cells.known_cells()) {
+    const int type = cells.cells[c].type;
+    if (!differs(type) || !cells.reaches(c)) continue;
     const double inside = averaged(ratio_[type]);
-    const AreaFraction& fraction = cells_[c].fraction;
-    for_rows(cells_[c].covered, own, [&](int y, Interval columns, int place) {
-      if (changed_[y].empty()) return;
-      const double excess = inside - averaged(viscosity_of_row(y));
+    const CellFraction<D>& fraction = reach_[c].fraction;
+    for_rows(reach_[c].covered, own, [&](int row, Interval columns, int place) {
+      if (changed_[row].empty()) return;
+      const double excess = inside - averaged(viscosity_of_row(row));
       const double* from = fraction.row(place);
-      T* row = rate.row(y);
+      T* to = row_at(row);
       for_pieces(columns, [&](int x, int begin, int end) {
-        for (const Interval& interval : changed_[y]) {
+        for (const Interval& interval : changed_[row]) {
           const int first = std::max(x, interval.begin), last = std::min(x + end - begin, interval.end);
-          const double* value = from + (begin - fraction.x0) - x;
-          for (int k = first; k < last; ++k) row[k] += static_cast<T>(excess * value[k]);
+          const double* value = from + (begin - fraction.first[0]) - x;
+          for (int k = first; k < last; ++k) to[k] += static_cast<T>(excess * value[k]);
         }
       });
     });
   }
-  const T outside = static_cast<T>(1 / plain_rate_ - 0.5);
-  for (int y = own.begin; y < own.end; ++y) {
-    const double viscosity = viscosity_of_row(y);
+  const T suspending = static_cast<T>(1 / plain_rate_ - 0.5);
+  for (int row = own.begin; row < own.end; ++row) {
+    if (changed_[row].empty()) continue;
+    const double viscosity = viscosity_of_row(row);
     const T plain = static_cast<T>(rate_of_layer(plain_rate_, viscosity)), of_row = static_cast<T>(averaged(viscosity));
-    T* row = rate.row(y);
-    for (const Interval& interval : changed_[y]) {
+    T* to = row_at(row);
+    for (const Interval& interval : changed_[row]) {
       for (int x = interval.begin; x < interval.end; ++x) {
-        if (row[x] == T(0)) {
-          row[x] = plain;
+        if (to[x] == T(0)) {
+          to[x] = plain;
         } else {
-          row[x] = T(1) / (T(0.5) + (harmonic ? outside / (of_row + row[x]) : outside * (of_row + row[x])));
+          to[x] = T(1) / (T(0.5) + (harmonic ? suspending / (of_row + to[x]) : suspending * (of_row + to[x])));
         }
       }
     }
   }
 }
 
-template class ViscosityField<float>;
-template class ViscosityField<double>;
+template class ViscosityField<float, 2>;
+template class ViscosityField<double, 2>;
+template class ViscosityField<float, 3>;
+template class ViscosityField<double, 3>;
 
 }  // namespace rouleau::core

@@ -93,7 +93,7 @@ void take_out_pressures(Worker worker, Membranes& membranes) {
   }
 }
 
-void keep_areas(Worker worker, Membranes& membranes, double strain) {
+void keep_enclosed(Worker worker, Membranes& membranes, double strain) {
   const double kept = std::exp(-strain);
   static const auto function = Dispatch<KeepArea, AreaTask*>::pick();
   for (const int c : membranes.own_cells(worker)) {

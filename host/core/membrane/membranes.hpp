@@ -9,11 +9,6 @@
 
 namespace rouleau::core {
 
-/// Two components for each node, of somebody else's.
-struct NodeVectors {
-  const double *x, *y;
-};
-
 /// A closed polygon and its state of rest, which the cells of a type share. Lattice units, around the origin. Nodes are
 /// counter-clockwise; segment i joins node i and the next node.
 struct RestShape {
@@ -34,9 +29,9 @@ RestShape make_rest_shape(std::vector<double> x, std::vector<double> y, double p
 struct Membranes : CellNodes {
   std::vector<std::shared_ptr<const RestShape>> types;
 
+  [[nodiscard]] std::array<const double*, 2> positions() const { return pointers<2>(position); }
+  [[nodiscard]] std::array<const double*, 2> forces() const { return pointers<2>(force); }
   [[nodiscard]] const RestShape& type_of(const CellRange& cell) const { return *types[cell.type]; }
-  [[nodiscard]] NodeVectors positions() const { return {position[0].data(), position[1].data()}; }
-  [[nodiscard]] NodeVectors forces() const { return {force[0].data(), force[1].data()}; }
 };
 
 /// Adds a cell that rests, its shape's origin at (x, y), turned counter-clockwise by `angle`.

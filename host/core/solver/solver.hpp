@@ -6,10 +6,9 @@
 #include <type_traits>
 
 #include "any_solver.hpp"
+#include "cell_tasks.hpp"
 #include "core/fluid/fluid.hpp"
-#include "outline_tasks.hpp"
 #include "schedule.hpp"
-#include "surface_tasks.hpp"
 
 namespace rouleau::core {
 
@@ -21,7 +20,7 @@ class Solver final : public AnySolver<Set::dimension> {
  public:
   static constexpr int dimension = Set::dimension;
   using typename Any::Cells, typename Any::Setup;
-  using CellTasks = std::conditional_t<dimension == 2, OutlineTasks<T>, SurfaceTasks<T>>;
+  using CellTasks = core::CellTasks<T, dimension>;
 
   /// The fluid is at rest until start(); `cells` must outlive the solver. Throws std::invalid_argument for a setup
   /// without nodes or collision operator, and for cells with what their dimension does not have.

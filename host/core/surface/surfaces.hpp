@@ -2,12 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "core/domain/domain.hpp"
 #include "core/membrane/cell_nodes.hpp"
 #include "core/membrane/geometry.hpp"
+#include "core/membrane/membranes.hpp"
 #include "mesh.hpp"
 
 namespace rouleau::core {
@@ -39,18 +41,18 @@ RestSurface make_rest_surface(Mesh mesh, std::vector<double> x, std::vector<doub
 struct Surfaces : CellNodes {
   std::vector<std::shared_ptr<const RestSurface>> types;
 
-  [[nodiscard]] std::array<const double*, 3> positions() const {
-    return {position[0].data(), position[1].data(), position[2].data()};
-  }
-  [[nodiscard]] std::array<const double*, 3> forces() const {
-    return {force[0].data(), force[1].data(), force[2].data()};
-  }
+  [[nodiscard]] std::array<const double*, 3> positions() const { return pointers<3>(position); }
+  [[nodiscard]] std::array<const double*, 3> forces() const { return pointers<3>(force); }
   [[nodiscard]] const RestSurface& type_of(int cell) const { return *types[cells[cell].type]; }
   [[nodiscard]] Nodes nodes(int cell) const {
     const int first = cells[cell].first;
     return {&position[0][first], &position[1][first], &position[2][first]};
   }
 };
+
+/// The cells of a scene in D dimensions.
+template <int D>
+using Cells = std::conditional_t<D == 2, Membranes, Surfaces>;
 
 /// Smallest and largest stretch of an edge: length over rest length.
 StretchRange stretch_range(const Surfaces& surfaces, int cell);

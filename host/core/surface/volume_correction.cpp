@@ -24,7 +24,7 @@ void take_out_pressures(Worker worker, Surfaces& surfaces, const SurfaceNormals&
   }
 }
 
-void keep_volumes(Worker worker, Surfaces& surfaces, const SurfaceNormals& normals, double strain) {
+void keep_enclosed(Worker worker, Surfaces& surfaces, const SurfaceNormals& normals, double strain) {
   const auto [x, y, z] = normals.sums();
   const double kept = std::exp(-strain);
   for (const int cell : surfaces.own_cells(worker)) {

@@ -113,7 +113,7 @@ TEST_CASE("the slip correction adds no force to the fluid") {
   SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5, 2), 0, 0}}, 1.0 / 6);
   take_forces(correction, m);
   double x = 0, y = 0;
-  for (std::size_t i = 0; i < m.position[0].size(); ++i) x += correction.forces().x[i], y += correction.forces().y[i];
+  for (std::size_t i = 0; i < m.position[0].size(); ++i) x += correction.forces()[0][i], y += correction.forces()[1][i];
   const ForceSums sums = force_sums(m);
   CHECK(std::abs(x - sums.x) < 1e-14 * sums.size);
   CHECK(std::abs(y - sums.y) < 1e-14 * sums.size);
@@ -133,10 +133,10 @@ TEST_CASE("the slip correction keeps the torque to second order in shift over ra
     }
     SlipCorrection correction(m, {{slip_constants(KernelKind::peskin4, 5, 2), 0, 0}}, 1.0 / 6);
     take_forces(correction, m);
-    const NodeVectors at = correction.positions(), force = correction.forces();
+    const auto at = correction.positions(), force = correction.forces();
     double torque = 0, expected = 0;
     for (std::size_t i = 0; i < m.position[0].size(); ++i) {
-      torque += at.x[i] * force.y[i] - at.y[i] * force.x[i];
+      torque += at[0][i] * force[1][i] - at[1][i] * force[0][i];
       expected += m.position[0][i] * m.force[1][i] - m.position[1][i] * m.force[0][i];
     }
     missing[size - 1] = std::abs(torque / expected - 1);
@@ -155,7 +155,7 @@ TEST_CASE("what the fluid does on the membrane is what the membrane does on the 
   take_forces(correction, m);
   double fluid = 0, membrane = 0, size = 0;
   for (std::size_t i = 0; i < m.position[0].size(); ++i) {
-    fluid += correction.forces().x[i] * m.velocity[0][i] + correction.forces().y[i] * m.velocity[1][i];
+    fluid += correction.forces()[0][i] * m.velocity[0][i] + correction.forces()[1][i] * m.velocity[1][i];
   }
   correction.correct({}, m);
   for (std::size_t i = 0; i < m.position[0].size(); ++i) {
@@ -214,7 +214,7 @@ TEST_CASE("what the fluid gets from forces without pressure is what membranes lo
   for (std::size_t i = 0; i < m.position[0].size(); ++i) {
     fluid += spread.force[0][i] * m.velocity[0][i] + spread.force[1][i] * m.velocity[1][i];
   }
-  keep_areas({}, m);
+  keep_enclosed({}, m);
   for (std::size_t i = 0; i < m.position[0].size(); ++i) {
     membrane += m.force[0][i] * m.velocity[0][i] + m.force[1][i] * m.velocity[1][i];
     size += std::hypot(m.force[0][i], m.force[1][i]) * std::hypot(m.velocity[0][i], m.velocity[1][i]);
@@ -234,7 +234,7 @@ TEST_CASE("the area correction makes no cell larger or smaller, and tells what w
   for (std::size_t i = 0; i < m.position[0].size(); ++i)
     moved.position[0][i] += m.velocity[0][i], moved.position[1][i] += m.velocity[1][i];
   const double leak = 1 - enclosed_area(moved, m.cells[0]) / m.cells[0].rest_area;
-  keep_areas({}, m);
+  keep_enclosed({}, m);
   CHECK(m.area_leakage[0] == Approx(leak).epsilon(1e-3));
   for (std::size_t i = 0; i < m.position[0].size(); ++i)
     m.position[0][i] += m.velocity[0][i], m.position[1][i] += m.velocity[1][i];
@@ -250,11 +250,11 @@ TEST_CASE("in a steady flow the leak that is told is that of a strain of one, an
   m.cells[0].rest_area = enclosed_area(m, m.cells[0]);
   m.area_leakage.assign(1, 0.0);
   const Membranes before = m;
-  keep_areas({}, m, strain);
+  keep_enclosed({}, m, strain);
   const double leak = m.area_leakage[0];
   for (int step = 1; step < 1000; ++step) {
     m.velocity[0] = before.velocity[0], m.velocity[1] = before.velocity[1];
-    keep_areas({}, m, strain);
+    keep_enclosed({}, m, strain);
   }
   CHECK(std::abs(leak) > 1e-6);
   CHECK(m.area_leakage[0] == Approx(strain > 0 ? leak / strain : 1000 * leak).epsilon(0.01));
@@ -267,7 +267,7 @@ TEST_CASE("the area correction brings a wrong area back") {
   for (int step = 0; step < 500; ++step) {
     std::fill(m.velocity[0].begin(), m.velocity[0].end(), 0.0);
     std::fill(m.velocity[1].begin(), m.velocity[1].end(), 0.0);
-    keep_areas({}, m);
+    keep_enclosed({}, m);
     for (std::size_t i = 0; i < m.position[0].size(); ++i)
       m.position[0][i] += m.velocity[0][i], m.position[1][i] += m.velocity[1][i];
   }

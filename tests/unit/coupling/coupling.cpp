@@ -42,7 +42,7 @@ TEST_CASE("force and torque on the lattice are those of the nodes") {
   auto random = generator(72);
   const Membranes m = cells_with_forces(random);
   const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::sharp6);
-  Coupling<double> coupling(kernel, channel);
+  Coupling<double, 2> coupling(kernel, channel);
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());
   CHECK(coupling.escaped(m) == -1);
@@ -62,7 +62,7 @@ namespace {
 /// Sum of force times velocity over the lattice and the walls, less that over the nodes, for a random velocity and
 /// walls that move. What nodes give lattice and walls get.
 template <class T>
-double adjointness_error(const Coupling<T>& coupling, Membranes& m, const core::Domain<2>& domain,
+double adjointness_error(const Coupling<T, 2>& coupling, Membranes& m, const core::Domain<2>& domain,
                          std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   const int nx = domain.size[0], ny = domain.size[1];
@@ -80,7 +80,7 @@ double adjointness_error(const Coupling<T>& coupling, Membranes& m, const core::
   const WallVelocity walls{0.3, -0.7};
   for (int y = 0; y < ny; ++y) fill_velocity_halo<T, 2>(velocity, {y}, domain, walls);
   coupling.interpolate({}, m, velocity);
-  const WallForces<2> share = coupling.wall_share(m, m.forces(), {});
+  const WallForces<2> share = coupling.wall_share(m, m.forces(), nullptr, {});
   error += share.lower[0] * walls.lower + share.upper[0] * walls.upper;
   double lost[2] = {-share.all(0), -share.all(1)};
   for (std::size_t i = 0; i < m.position[0].size(); ++i) lost[0] += m.force[0][i], lost[1] += m.force[1][i];
@@ -107,7 +107,7 @@ TEMPLATE_TEST_CASE("spreading and interpolation are adjoint, over periodic borde
   for (std::size_t i = 0; i < m.position[1].size(); i += 3) m.position[1][i] = anywhere(random);
   const KernelKind kernel =
       GENERATE(KernelKind::peskin4, KernelKind::cosine4, KernelKind::roma3, KernelKind::linear2, KernelKind::sharp6);
-  Coupling<TestType> coupling(kernel, domain);
+  Coupling<TestType, 2> coupling(kernel, domain);
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());
   REQUIRE(coupling.escaped(m) == -1);
@@ -118,7 +118,7 @@ TEST_CASE("linear velocity is interpolated exactly by every kernel without a fir
   auto random = generator(74);
   Membranes m = cells_with_forces(random);
   const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::sharp6);
-  Coupling<double> coupling(kernel, channel);
+  Coupling<double, 2> coupling(kernel, channel);
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());
   auto velocity = field<double>(80, 64);
@@ -137,7 +137,7 @@ TEMPLATE_TEST_CASE("spread forces are the same to the last bit for any number of
   Membranes m = cells_with_forces(random);
   std::vector<VectorField<TestType, 2>> results;
   for (const int workers : {1, 2, 3, 7}) {
-    Coupling<TestType> coupling(KernelKind::peskin4, channel);
+    Coupling<TestType, 2> coupling(KernelKind::peskin4, channel);
     coupling.reserve(m);
     run_pass(workers, [&](Worker worker) { coupling.locate(worker, m, m.positions()); });
     results.push_back(field<TestType>(80, 64));
@@ -153,7 +153,7 @@ TEST_CASE("a node beyond a wall, or nowhere, is reported and touches nothing") {
   Membranes m = cells_with_forces(random);
   const double bad = GENERATE(-1.01, 64.0, 1e30, -1e300, std::numeric_limits<double>::infinity(), std::nan(""));
   m.position[1][77] = bad;
-  Coupling<double> coupling(KernelKind::peskin4, channel);
+  Coupling<double, 2> coupling(KernelKind::peskin4, channel);
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());
   CHECK(coupling.escaped(m) == 77);
@@ -169,7 +169,7 @@ TEST_CASE("a node beyond a wall, or nowhere, is reported and touches nothing") {
 
 TEST_CASE("nodes may lie on the outermost rows, half a spacing beyond the walls, and wherever rounding wraps them") {
   Membranes m = biconcave_cells({{30, 30, 0}}, 8);
-  Coupling<double> coupling(KernelKind::peskin4, channel);
+  Coupling<double, 2> coupling(KernelKind::peskin4, channel);
   coupling.reserve(m);
   m.position[1][0] = -1.0;
   m.position[1][1] = 63.999999;

@@ -161,7 +161,7 @@ TEST_CASE("beside a moving wall linear flow is interpolated exactly, by every ke
     m.position[0][i] = along(random);
     m.position[1][i] = i % 2 == 0 ? -0.5 + gap(random) : ny - 0.5 - gap(random);
   }
-  Coupling<double> coupling(kernel, {{nx, ny}, {true, false}});
+  Coupling<double, 2> coupling(kernel, {{nx, ny}, {true, false}});
   coupling.reserve(m);
   coupling.locate({}, m, m.positions());
   REQUIRE(coupling.escaped(m) == -1);

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/coupling/surface_coupling.hpp"
+#include "core/coupling/coupling.hpp"
 #include "core/fluid/periodic.hpp"
 #include "shape/surface.hpp"
 #include "unit/random.hpp"
@@ -81,7 +81,7 @@ TEMPLATE_TEST_CASE("in three dimensions spreading and interpolation are adjoint,
     for (const KernelKind kernel :
          {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::cosine4, KernelKind::sharp6}) {
       Surfaces s = sphere_at(center, random);
-      SurfaceCoupling<TestType> coupling(kernel, domain);
+      Coupling<TestType, 3> coupling(kernel, domain);
       coupling.reserve(s);
       coupling.locate({}, s, s.positions());
       REQUIRE(coupling.escaped(s) == -1);
@@ -124,7 +124,7 @@ TEMPLATE_TEST_CASE(
                          : any(random) < 0 ? any(random) / 2 + 0.2
                                            : 14.8 + any(random) / 2;
     }
-    SurfaceCoupling<TestType> coupling(kernel, domain);
+    Coupling<TestType, 3> coupling(kernel, domain);
     coupling.reserve(s);
     coupling.locate({}, s, s.positions());
     REQUIRE(coupling.escaped(s) == -1);
@@ -170,7 +170,7 @@ TEST_CASE("in three dimensions force and torque on the lattice are those of the 
   const Domain<3> domain(box, {true, true, true});
   for (const KernelKind kernel : {KernelKind::peskin4, KernelKind::roma3, KernelKind::linear2, KernelKind::sharp6}) {
     Surfaces s = sphere_at({9.7, 8.2, 7.9}, random);
-    SurfaceCoupling<double> coupling(kernel, domain);
+    Coupling<double, 3> coupling(kernel, domain);
     coupling.reserve(s);
     coupling.locate({}, s, s.positions());
     VectorField<double, 3> force = field<double>();
@@ -195,7 +195,7 @@ TEST_CASE("in three dimensions linear velocity is interpolated exactly") {
   auto random = generator(83);
   const Domain<3> domain(box, {true, true, true});
   Surfaces s = sphere_at({9.7, 8.2, 7.9}, random);
-  SurfaceCoupling<double> coupling(KernelKind::peskin4, domain);
+  Coupling<double, 3> coupling(KernelKind::peskin4, domain);
   coupling.reserve(s);
   coupling.locate({}, s, s.positions());
   VectorField<double, 3> u = field<double>();
@@ -222,7 +222,7 @@ TEMPLATE_TEST_CASE("spread forces of surfaces are the same bits however rows are
   }
   const KernelKind kernel = GENERATE(KernelKind::peskin4, KernelKind::sharp6);
   const auto spread = [&](const std::vector<int>& cuts) {
-    SurfaceCoupling<TestType> coupling(kernel, domain);
+    Coupling<TestType, 3> coupling(kernel, domain);
     coupling.reserve(s);
     coupling.locate({}, s, s.positions());
     VectorField<TestType, 3> force = field<TestType>();
@@ -243,7 +243,7 @@ TEMPLATE_TEST_CASE("spread forces of surfaces are the same bits however rows are
   for (const auto& borders : {std::vector{0, 9, 20}, std::vector{0, 7, 10, 20}}) {
     for (std::size_t b = 1; b < borders.size(); ++b) {
       const Domain<3> part(box, {true, true, true}, {{borders[b - 1], 0, 0}, {borders[b], box[1], box[2]}});
-      SurfaceCoupling<TestType> coupling(kernel, part);
+      Coupling<TestType, 3> coupling(kernel, part);
       coupling.reserve(s);
       coupling.locate({}, s, s.positions());
       VectorField<TestType, 3> force;
@@ -263,7 +263,7 @@ TEST_CASE("a node of a surface beyond a wall, or nowhere, is reported and touche
   auto random = generator(85);
   const Domain<3> domain(box, {true, false, true});
   Surfaces s = sphere_at({9, 9, 8}, random);
-  SurfaceCoupling<double> coupling(KernelKind::peskin4, domain);
+  Coupling<double, 3> coupling(KernelKind::peskin4, domain);
   coupling.reserve(s);
   for (const double bad : {std::nan(""), 18.01, -1.01, 1e300}) {
     Surfaces lost = s;

@@ -1,10 +1,10 @@
-// AreaFraction of lattice nodes by cells, the relaxation rate made from it, and the marks of active nodes.
+// Fraction of lattice nodes by cells, the relaxation rate made from it, and the marks of active nodes.
 #include "core/coupling/viscosity_field.hpp"
 
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "core/coupling/area_fraction.hpp"
+#include "core/coupling/cell_fraction.hpp"
 #include "core/fluid/layers.hpp"
 #include "core/membrane/geometry.hpp"
 #include "unit/cell_fixture.hpp"
@@ -24,15 +24,15 @@ Membranes polygon(const std::vector<std::pair<double, double>>& nodes) {
   return m;
 }
 
-double value_at(const AreaFraction& fraction, int x, int y) {
-  const int i = x - fraction.x0, j = y - fraction.y0;
-  if (i < 0 || j < 0 || i >= fraction.width || j >= fraction.height) return 0;
+double value_at(const CellFraction<2>& fraction, int x, int y) {
+  const int i = x - fraction.first[0], j = y - fraction.first[1];
+  if (i < 0 || j < 0 || i >= fraction.size[0] || j >= fraction.size[1]) return 0;
   return fraction.row(j)[i];
 }
-double total(const AreaFraction& fraction) {
+double total(const CellFraction<2>& fraction) {
   double sum = 0;
-  for (int j = 0; j < fraction.height; ++j) {
-    for (int i = 0; i < fraction.width; ++i) sum += fraction.row(j)[i];
+  for (int j = 0; j < fraction.size[1]; ++j) {
+    for (int i = 0; i < fraction.size[0]; ++i) sum += fraction.row(j)[i];
   }
   return sum;
 }
@@ -73,7 +73,7 @@ Field<T, 2> plain_rate(int nx, int ny, double rate) {
 }
 
 template <class T>
-void update(ViscosityField<T>& viscosity_field, const Membranes& m, Field<T, 2>& rate, NodeMask& mask) {
+void update(ViscosityField<T, 2>& viscosity_field, const Membranes& m, Field<T, 2>& rate, NodeMask& mask) {
   viscosity_field.measure({}, m);
   REQUIRE(viscosity_field.due());
   viscosity_field.cover({}, m);
@@ -88,8 +88,8 @@ TEST_CASE("the fraction of a rectangle is exact, on and off the lattice's edges"
   const double x0 = GENERATE(3.0, 3.5, 3.2, -7.9), y0 = GENERATE(4.0, 4.5, 4.8, -2.1);
   const double x1 = x0 + GENERATE(0.3, 1.0, 5.4), y1 = y0 + GENERATE(0.2, 1.0, 3.7);
   const Membranes m = polygon({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}});
-  AreaFraction fraction;
-  cover(m, m.cells[0], fraction);
+  CellFraction<2> fraction;
+  cover(m, 0, fraction);
   for (int y = -5; y < 15; ++y) {
     for (int x = -10; x < 15; ++x) {
       REQUIRE(value_at(fraction, x, y) == Approx(overlap(x0, x1, x) * overlap(y0, y1, y)).margin(1e-14));
@@ -108,8 +108,8 @@ TEST_CASE("the fraction of triangles is that of clipping them to every node's sq
     const double turn = (p[1] - p[0]).x() * (p[2] - p[0]).y() - (p[1] - p[0]).y() * (p[2] - p[0]).x();
     if (turn < 0) std::swap(p[1], p[2]);
     const Membranes m = polygon({{p[0].x(), p[0].y()}, {p[1].x(), p[1].y()}, {p[2].x(), p[2].y()}});
-    AreaFraction fraction;
-    cover(m, m.cells[0], fraction);
+    CellFraction<2> fraction;
+    cover(m, 0, fraction);
     for (int y = -12; y <= 12; ++y) {
       for (int x = -12; x <= 12; ++x)
         worst = std::max(worst, std::abs(value_at(fraction, x, y) - clipped_area(p, x, y)));
@@ -123,15 +123,15 @@ TEST_CASE("the fraction adds up to the enclosed area, before and after smoothing
   Membranes m = biconcave_cells({{30.3, 20.1, 0.3}, {-1000.7, 400.2, 1.2}, {3, 4, 2.2}});
   deform(m, random, 4, 0.2);
   std::vector<double> scratch;
-  for (const CellRange& cell : m.cells) {
-    AreaFraction fraction;
-    cover(m, cell, fraction);
-    const double area = enclosed_area(m, cell);
+  for (int c = 0; c < m.cell_count(); ++c) {
+    CellFraction<2> fraction;
+    cover(m, c, fraction);
+    const double area = enclosed_area(m, m.cells[c]);
     CHECK(std::abs(total(fraction) - area) < 1e-12 * area);
     smooth(fraction, scratch);
     CHECK(std::abs(total(fraction) - area) < 1e-12 * area);
-    for (int j = 0; j < fraction.height; ++j) {
-      for (int i = 0; i < fraction.width; ++i) {
+    for (int j = 0; j < fraction.size[1]; ++j) {
+      for (int i = 0; i < fraction.size[0]; ++i) {
         const auto at = static_cast<std::size_t>(j);
         if (i < fraction.begin[at] || i >= fraction.end[at]) REQUIRE(fraction.row(j)[i] == 0);
       }
@@ -147,25 +147,25 @@ TEST_CASE("the relaxation rate follows the arithmetic mean of the viscosities, o
   deform(m, random, 2, 0.1);
   m.cells[1].type = 1;
   const double tau = 0.8;
-  ViscosityField<double> viscosity_field(m, {5.0, 2.0}, ViscosityMean::arithmetic, 0, 1 / tau,
-                                         {{nx, ny}, {true, periodic_y}});
+  ViscosityField<double, 2> viscosity_field(m, {5.0, 2.0}, ViscosityMean::arithmetic, 0, 1 / tau,
+                                            {{nx, ny}, {true, periodic_y}});
   auto rate = plain_rate<double>(nx, ny, 1 / tau);
   NodeMask mask(core::Domain<2>({nx, ny}, {true, false}));
   for (int round = 0; round < 3; ++round) {
     update(viscosity_field, m, rate, mask);
     // Smoothed sum over cells, wrapped, node by node.
     std::vector<double> excess(static_cast<std::size_t>(nx) * ny, 0.0), scratch;
-    for (const CellRange& cell : m.cells) {
-      AreaFraction fraction;
-      cover(m, cell, fraction);
+    for (int c = 0; c < m.cell_count(); ++c) {
+      CellFraction<2> fraction;
+      cover(m, c, fraction);
       smooth(fraction, scratch);
-      for (int j = 0; j < fraction.height; ++j) {
-        for (int i = 0; i < fraction.width; ++i) {
-          const int x = ((fraction.x0 + i) % nx + nx) % nx;
-          int y = fraction.y0 + j;
+      for (int j = 0; j < fraction.size[1]; ++j) {
+        for (int i = 0; i < fraction.size[0]; ++i) {
+          const int x = ((fraction.first[0] + i) % nx + nx) % nx;
+          int y = fraction.first[1] + j;
           if (periodic_y) y = (y % ny + ny) % ny;
           if (y < 0 || y >= ny) continue;
-          excess[static_cast<std::size_t>(y * nx + x)] += (cell.type == 0 ? 4.0 : 1.0) * fraction.row(j)[i];
+          excess[static_cast<std::size_t>(y * nx + x)] += (m.cells[c].type == 0 ? 4.0 : 1.0) * fraction.row(j)[i];
         }
       }
     }
@@ -190,7 +190,7 @@ TEST_CASE("in layers the inside of a cell keeps its viscosity, and what it leave
   Membranes m = biconcave_cells({{30.4, 19.1, 0.3}, {55.2, 40, 1.2}});
   m.cells[1].type = 1;
   const core::Domain<2> domain{{nx, ny}, {true, false}};
-  ViscosityField<double> viscosity_field(m, {5.0, 1.0}, mean, 0, 1 / tau, domain, rows);
+  ViscosityField<double, 2> viscosity_field(m, {5.0, 1.0}, mean, 0, 1 / tau, domain, rows);
   CHECK(viscosity_field.varies());
   Field<double, 2> rate({nx, ny});
   for (int y = 0; y < ny; ++y) std::fill_n(rate.row(y), nx, rate_of(rows[y]));
@@ -225,7 +225,7 @@ TEST_CASE("every node that a membrane can reach before the next update is marked
   const double ratio = GENERATE(1.0, 5.0);
   Membranes m = biconcave_cells({{-170.4, 20.1, 0.3}, {30.2, 40, 1.2}});
   deform(m, random, 2, 0.1);
-  ViscosityField<float> viscosity_field(m, {ratio}, ViscosityMean::arithmetic, 0, 1.0, {{nx, ny}, {true, false}});
+  ViscosityField<float, 2> viscosity_field(m, {ratio}, ViscosityMean::arithmetic, 0, 1.0, {{nx, ny}, {true, false}});
   CHECK(viscosity_field.varies() == (ratio != 1));
   auto rate = plain_rate<float>(nx, ny, 1.0);
   NodeMask mask(core::Domain<2>({nx, ny}, {true, false}));
@@ -248,7 +248,7 @@ TEST_CASE("every node that a membrane can reach before the next update is marked
 
 TEST_CASE("an update is due once a node has moved by a tenth of a spacing, and for positions that are not numbers") {
   Membranes m = biconcave_cells({{30, 20, 0}, {30, 40, 0}});
-  ViscosityField<double> viscosity_field(m, {5.0}, ViscosityMean::arithmetic, 0, 1.0, {{80, 64}, {true, false}});
+  ViscosityField<double, 2> viscosity_field(m, {5.0}, ViscosityMean::arithmetic, 0, 1.0, {{80, 64}, {true, false}});
   auto rate = plain_rate<double>(80, 64, 1.0);
   NodeMask mask(core::Domain<2>({80, 64}, {true, false}));
   update(viscosity_field, m, rate, mask);
@@ -272,7 +272,7 @@ TEST_CASE("an update is due once a node has moved by a tenth of a spacing, and f
 
 TEST_CASE("where no cell is any more, the plain rate is back to the last bit") {
   Membranes m = biconcave_cells({{30, 20, 0}});
-  ViscosityField<float> viscosity_field(m, {5.0}, ViscosityMean::arithmetic, 0, 1 / 0.7, {{160, 64}, {true, false}});
+  ViscosityField<float, 2> viscosity_field(m, {5.0}, ViscosityMean::arithmetic, 0, 1 / 0.7, {{160, 64}, {true, false}});
   auto rate = plain_rate<float>(160, 64, 1 / 0.7);
   NodeMask mask(core::Domain<2>({160, 64}, {true, false}));
   update(viscosity_field, m, rate, mask);
@@ -291,7 +291,7 @@ TEST_CASE("an update after some cells have moved gives what all cells anew would
   const bool periodic_y = GENERATE(false, true);
   Membranes m = biconcave_cells({{-170.4, 20.1, 0.3}, {30.2, 40, 1.2}, {32.1, 25.0, -0.2}, {60.0, 33.0, 0.9}});
   deform(m, random, 2, 0.1);
-  ViscosityField<double> kept(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, {{nx, ny}, {true, periodic_y}});
+  ViscosityField<double, 2> kept(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, {{nx, ny}, {true, periodic_y}});
   auto rate = plain_rate<double>(nx, ny, 1.25);
   NodeMask mask(core::Domain<2>({nx, ny}, {true, false}));
   update(kept, m, rate, mask);
@@ -302,7 +302,7 @@ TEST_CASE("an update after some cells have moved gives what all cells anew would
       m.position[1][static_cast<std::size_t>(i)] -= 0.4;
     }
     update(kept, m, rate, mask);
-    ViscosityField<double> fresh(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, {{nx, ny}, {true, periodic_y}});
+    ViscosityField<double, 2> fresh(m, {5.0}, ViscosityMean::arithmetic, 0, 1.25, {{nx, ny}, {true, periodic_y}});
     auto fresh_rate = plain_rate<double>(nx, ny, 1.25);
     NodeMask fresh_activity(core::Domain<2>({nx, ny}, {true, false}));
     update(fresh, m, fresh_rate, fresh_activity);

@@ -94,7 +94,7 @@ TEST_CASE("what the fluid gets from forces without pressure is what cells lose t
     return sum;
   };
   const double fluid = power(spread, s);
-  keep_volumes({}, s, normals);
+  keep_enclosed({}, s, normals);
   CHECK(std::abs(fluid - power(s, s)) < 1e-12 * s.node_count());
   CHECK(std::abs(fluid) > 1e-3);
 }
@@ -109,8 +109,8 @@ TEST_CASE("the volume correction makes no cell larger or smaller, and tells what
   Surfaces free = s, shared = s;
   move(free, 1);
   const SurfaceNormals normals = normals_of(s);
-  keep_volumes({}, s, normals);
-  for (int worker = 0; worker < 3; ++worker) keep_volumes({worker, 3}, shared, normals);
+  keep_enclosed({}, s, normals);
+  for (int worker = 0; worker < 3; ++worker) keep_enclosed({worker, 3}, shared, normals);
   CHECK(shared.velocity[0] == s.velocity[0]);
   CHECK(shared.area_leakage == s.area_leakage);
   move(s, 1);
@@ -129,11 +129,11 @@ TEST_CASE("in a steady flow the leak of volume that is told is that of a strain 
   rest_as_they_are(s);
   const Surfaces before = s;
   const SurfaceNormals normals = normals_of(s);
-  keep_volumes({}, s, normals, 0.01);
+  keep_enclosed({}, s, normals, 0.01);
   const std::vector<double> leak = s.area_leakage;
   for (int step = 1; step < 1000; ++step) {
     s.velocity[0] = before.velocity[0], s.velocity[1] = before.velocity[1], s.velocity[2] = before.velocity[2];
-    keep_volumes({}, s, normals, 0.01);
+    keep_enclosed({}, s, normals, 0.01);
   }
   for (int cell = 0; cell < 2; ++cell) CHECK(s.area_leakage[cell] == Approx(leak[cell] / 0.01).epsilon(0.01));
 }
@@ -147,7 +147,7 @@ TEST_CASE("the volume correction brings a wrong volume back") {
   s.types[1] = std::make_shared<const RestSurface>(larger);
   for (int step = 0; step < 500; ++step) {
     for (auto& velocity : s.velocity) std::fill(velocity.begin(), velocity.end(), 0.0);
-    keep_volumes({}, s, normals_of(s));
+    keep_enclosed({}, s, normals_of(s));
     move(s, 1);
   }
   CHECK(std::abs(volume(s, 0) / s.type_of(0).rest_volume - 1) < 1e-12);

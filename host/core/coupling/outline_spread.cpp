@@ -1,10 +1,6 @@
-#include "spread.hpp"
-
-#include <algorithm>
-#include <rouleau/dispatch.hpp>
+#include "outline_spread.hpp"
 
 #include "core/fluid/walls.hpp"
-#include "kernel.hpp"
 
 namespace rouleau::core {
 
@@ -16,9 +12,10 @@ namespace {
 template <class T, class Kernel>
 struct Spread {
   template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(const SpreadTask<T>* task) {
-    const SpreadTask<T> t = *task;
+  ROULEAU_ALWAYS_INLINE static void run(const SpreadTask<T, 2>* task) {
+    SpreadTask<T, 2> t = *task;
     const Box<2>& block = t.domain->block;
+    t.row_begin += block.begin[1], t.row_end += block.begin[1];  // from now on of the lattice
     const Inside inside{std::max(t.row_begin, 0), std::min(t.row_end, t.domain->size[1]), block.begin[0], block.end[0],
                         t.domain->size[1]};
     // Neighbouring nodes add to the same places, and a sum that is still on its way to memory stalls the next one:
@@ -39,8 +36,8 @@ struct Spread {
   struct Inside {
     int row_begin, row_end, column_begin, column_end, height;
   };
-  ROULEAU_ALWAYS_INLINE static void spread(const SpreadTask<T>& t, const Inside& inside, int i) {
-    const int row = t.at.row[i] + start, column = t.at.column[i] + start;
+  ROULEAU_ALWAYS_INLINE static void spread(const SpreadTask<T, 2>& t, const Inside& inside, int i) {
+    const int row = t.at.base[1][i] + start, column = t.at.base[0][i] + start;
     const bool whole = row >= 0 && row + points <= inside.height;
     if (whole && (row + points <= inside.row_begin || row >= inside.row_end)) return;
     if (column < inside.column_begin || column + points > inside.column_end || !whole) {
@@ -48,45 +45,45 @@ struct Spread {
       if (within && (column + points <= inside.column_begin || column >= inside.column_end)) return;
       return spread_at_border(t, i);
     }
-    const Forces wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
-    const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
-    const Forces fx = wx * Lanes(t.force_x[i]), fy = wx * Lanes(t.force_y[i]);
-    const std::ptrdiff_t at = row * t.stride + column;
+    const Forces wx = KernelWeights<Kernel, T>(t.at.p[0][i], t.at.q[0][i]).weight;
+    const SpreadWeights<Kernel, T> wy(t.at.p[1][i], t.at.q[1][i]);
+    const Forces fx = wx * Lanes(t.force[0][i]), fy = wx * Lanes(t.force[1][i]);
+    const std::ptrdiff_t at = row * t.stride[1] + column;
     if (row >= inside.row_begin && row + points <= inside.row_end) {
-      for (int k = 0; k < points; ++k) add(t, fx, fy, wy.weight[k], at + k * t.stride);
+      for (int k = 0; k < points; ++k) add(t, fx, fy, wy.weight[k], at + k * t.stride[1]);
     } else {
       for (int k = 0; k < points; ++k) {
-        if (row + k >= inside.row_begin && row + k < inside.row_end) add(t, fx, fy, wy.weight[k], at + k * t.stride);
+        if (row + k >= inside.row_begin && row + k < inside.row_end) add(t, fx, fy, wy.weight[k], at + k * t.stride[1]);
       }
     }
   }
-  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T>& t, const Forces& fx, const Forces& fy, const Lanes& weight,
-                                        std::ptrdiff_t at) {
-    (Forces::load(t.origin_x + at) + fx * weight).store(t.origin_x + at);
-    (Forces::load(t.origin_y + at) + fy * weight).store(t.origin_y + at);
+  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T, 2>& t, const Forces& fx, const Forces& fy,
+                                        const Lanes& weight, std::ptrdiff_t at) {
+    (Forces::load(t.origin[0] + at) + fx * weight).store(t.origin[0] + at);
+    (Forces::load(t.origin[1] + at) + fy * weight).store(t.origin[1] + at);
   }
 
   /// The same sums, number by number: of a stencil that reaches over the border of the lattice or of the block.
-  [[gnu::noinline, gnu::cold]] static void spread_at_border(const SpreadTask<T>& t, int i) {
-    if (t.at.row[i] == outside) return;
+  [[gnu::noinline, gnu::cold]] static void spread_at_border(const SpreadTask<T, 2>& t, int i) {
+    if (t.at.base[1][i] == outside) return;
     const Domain<2>& domain = *t.domain;
-    const Forces wx = KernelWeights<Kernel, T>(t.at.p_x[i], t.at.q_x[i]).weight;
-    const SpreadWeights<Kernel, T> wy(t.at.p_y[i], t.at.q_y[i]);
-    const Forces fx = wx * Lanes(t.force_x[i]), fy = wx * Lanes(t.force_y[i]);
+    const Forces wx = KernelWeights<Kernel, T>(t.at.p[0][i], t.at.q[0][i]).weight;
+    const SpreadWeights<Kernel, T> wy(t.at.p[1][i], t.at.q[1][i]);
+    const Forces fx = wx * Lanes(t.force[0][i]), fy = wx * Lanes(t.force[1][i]);
     for (int k = 0; k < points; ++k) {
-      int row = domain.wrapped(1, t.at.row[i] + start + k);
+      int row = domain.wrapped(1, t.at.base[1][i] + start + k);
       Lanes weight = wy.weight[k];
       if (row < 0) {  // beyond a wall
-        row = mirrored(t.at.row[i] + start + k, domain.size[1]);
+        row = mirrored(t.at.base[1][i] + start + k, domain.size[1]);
         weight = -weight;
       }
       if (row < t.row_begin || row >= t.row_end) continue;
       for (int l = 0; l < points; ++l) {
-        const int column = domain.wrapped(0, t.at.column[i] + start + l);
+        const int column = domain.wrapped(0, t.at.base[0][i] + start + l);
         if (column < domain.block.begin[0] || column >= domain.block.end[0]) continue;
-        const std::ptrdiff_t at = row * t.stride + column;
-        t.origin_x[at] = (Forces::all(t.origin_x[at]) + fx * weight).at(l);
-        t.origin_y[at] = (Forces::all(t.origin_y[at]) + fy * weight).at(l);
+        const std::ptrdiff_t at = row * t.stride[1] + column;
+        t.origin[0][at] = (Forces::all(t.origin[0][at]) + fx * weight).at(l);
+        t.origin[1][at] = (Forces::all(t.origin[1][at]) + fy * weight).at(l);
       }
     }
   }
@@ -95,13 +92,13 @@ struct Spread {
 }  // namespace
 
 template <class Kernel, class T>
-void (*pick_spread())(const SpreadTask<T>*) {
-  return Dispatch<Spread<T, Kernel>, const SpreadTask<T>*>::pick();
+void (*pick_outline_spread())(const SpreadTask<T, 2>*) {
+  return Dispatch<Spread<T, Kernel>, const SpreadTask<T, 2>*>::pick();
 }
 
-#define ROULEAU_INSTANTIATE(Kernel)                                        \
-  template void (*pick_spread<Kernel, float>())(const SpreadTask<float>*); \
-  template void (*pick_spread<Kernel, double>())(const SpreadTask<double>*);
+#define ROULEAU_INSTANTIATE(Kernel)                                                   \
+  template void (*pick_outline_spread<Kernel, float>())(const SpreadTask<float, 2>*); \
+  template void (*pick_outline_spread<Kernel, double>())(const SpreadTask<double, 2>*);
 ROULEAU_INSTANTIATE(Peskin4)
 ROULEAU_INSTANTIATE(Cosine4)
 ROULEAU_INSTANTIATE(Roma3)

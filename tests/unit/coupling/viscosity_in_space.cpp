@@ -4,7 +4,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "core/coupling/interior_field.hpp"
+#include "core/coupling/viscosity_field.hpp"
 #include "core/fluid/layers.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "shape/surface.hpp"
@@ -22,7 +22,7 @@ Surfaces ellipsoid_at(const Vec<3>& center, int n = 16) {
   return s;
 }
 
-double sum(const VolumeFraction& fraction) {
+double sum(const CellFraction<3>& fraction) {
   return std::accumulate(fraction.value.begin(), fraction.value.end(), 0.0);
 }
 
@@ -36,7 +36,7 @@ struct Rates {
 Rates updated(const Surfaces& s, double ratio, double plain, const Domain<3>& domain, int workers) {
   Rates rates{.mask = NodeMask(domain)};
   rates.rate.fill(plain);
-  InteriorField<double> field(s, {ratio}, plain, domain);
+  ViscosityField<double, 3> field(s, {ratio}, ViscosityMean::arithmetic, 0, plain, domain);
   for (int w = 0; w < workers; ++w) field.measure({w, workers}, s);
   for (int w = 0; w < workers; ++w) field.cover({w, workers}, s);
   REQUIRE(field.due());
@@ -52,13 +52,13 @@ TEST_CASE("the fraction inside is 1 or 0 away from a surface, and its sum is the
   for (int trial = 0; trial < 5; ++trial) {
     const Surfaces s = ellipsoid_at({10 + place(random), 11 + place(random), -4 + place(random)});
     const double volume = enclosed_volume(s.type_of(0).mesh, s.nodes(0));
-    VolumeFraction fraction;
-    cover(s.type_of(0).mesh, s.nodes(0), fraction);
+    CellFraction<3> fraction;
+    cover(s, 0, fraction);
     CHECK(sum(fraction) == Approx(volume).epsilon(4e-3));
     for (int k = 0; k < fraction.size[2]; ++k) {
       for (int j = 0; j < fraction.size[1]; ++j) {
         for (int i = 0; i < fraction.size[0]; ++i) {
-          const double value = fraction.row(j, k)[i];
+          const double value = fraction.row(k * fraction.size[1] + j)[i];
           CHECK(value >= -1e-12);
           CHECK(value <= 1 + 1e-12);
           const Vec<3> node(fraction.first[0] + i, fraction.first[1] + j, fraction.first[2] + k);
@@ -68,14 +68,14 @@ TEST_CASE("the fraction inside is 1 or 0 away from a surface, and its sum is the
       }
     }
     std::vector<double> scratch;
-    const VolumeFraction sharp = fraction;
+    const CellFraction<3> sharp = fraction;
     smooth(fraction, scratch);
     CHECK(sum(fraction) == Approx(sum(sharp)).epsilon(1e-12));
     Surfaces twice = s;
     for (auto& places : twice.position) {
       for (double& place_along : places) place_along *= 2;
     }
-    cover(twice.type_of(0).mesh, twice.nodes(0), fraction);
+    cover(twice, 0, fraction);
     CHECK(sum(fraction) == Approx(8 * volume).epsilon(1e-3));
   }
 }
@@ -91,8 +91,8 @@ TEST_CASE("a surface whose edges and nodes lie on lines through the lattice is c
   };
   s.types.push_back(std::make_shared<const RestSurface>(octahedron()));
   add_cell(s, 0, {0, 0.25, 0.25});
-  VolumeFraction fraction;
-  cover(s.type_of(0).mesh, s.nodes(0), fraction);
+  CellFraction<3> fraction;
+  cover(s, 0, fraction);
   CHECK(sum(fraction) == Approx(4.0 / 3 * 64).epsilon(0.02));
   CHECK(*std::max_element(fraction.value.begin(), fraction.value.end()) == Approx(1));
   CHECK(*std::min_element(fraction.value.begin(), fraction.value.end()) == 0);
@@ -145,7 +145,7 @@ TEST_CASE("in layers the inside of a surface keeps its viscosity, and what it le
   for (int z = 0; z < box[2]; ++z) {
     for (int y = 0; y < box[1]; ++y) std::fill_n(rates.rate.row(y, z), box[0], rate_of_layer(1 / tau, rows[y]));
   }
-  InteriorField<double> field(s, {ratio}, 1 / tau, domain, rows);
+  ViscosityField<double, 3> field(s, {ratio}, ViscosityMean::arithmetic, 0, 1 / tau, domain, rows);
   CHECK(field.varies());
   const auto update = [&] {
     field.measure({}, s);
@@ -174,7 +174,7 @@ TEST_CASE("where a surface has been the fluid is the plain one again") {
   Surfaces s = ellipsoid_at({12, 11, 10}, 8);
   Rates rates{.mask = NodeMask(domain)};
   rates.rate.fill(0.8);
-  InteriorField<double> field(s, {3.0}, 0.8, domain);
+  ViscosityField<double, 3> field(s, {3.0}, ViscosityMean::arithmetic, 0, 0.8, domain);
   const auto update = [&] {
     field.measure({}, s);
     field.cover({}, s);

@@ -1,0 +1,119 @@
+// The loops over the stencils of nodes, for one kernel: where they lie, what is spread over them and read from them.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <rouleau/dispatch.hpp>
+
+#include "core/domain/domain.hpp"
+#include "core/domain/vectors.hpp"
+#include "core/domain/wrapped.hpp"
+#include "kernel.hpp"
+#include "wall_share.hpp"
+
+namespace rouleau::core {
+
+constexpr int outside = -1000000;  // along the last axis of a node whose stencil is not on the lattice
+
+/// Base nodes and what is kept of the weights (kernel.hpp), of all nodes: written by Locate, read by the others.
+template <class Integer, class Number, int D>
+struct Stencils {
+  Integer* base[D];
+  Number *p[D], *q[D];
+};
+
+template <class T, int D>
+struct LocateTask {
+  Stencils<int, T, D> to;
+  const double* place[D];
+  double size[D];  // of the lattice
+  bool periodic[D];
+  int begin, end;  // nodes
+  double lowest,
+      highest;  // set to the least and the largest base along the last axis; `outside` for a stencil off the lattice
+};
+
+template <class T, int D>
+struct SpreadTask {
+  Stencils<const int, const T, D> at;
+  const double* force[D];
+  int begin, end;  // nodes of one cell
+  const Domain<D>* domain;
+  int row_begin, row_end;    // of the block
+  T* origin[D];              // where node 0 of the lattice lies, or would lie if it belonged to the block
+  std::ptrdiff_t stride[D];  // from a node to the next along an axis, the same in all components
+};
+
+template <class T, int D>
+struct InterpolateTask {
+  Stencils<const int, const T, D> at;
+  double* velocity[D];
+  int begin, end;
+  const T* origin[D];
+  std::ptrdiff_t stride[D];
+  bool fetch_ahead;     // most of the fields has left the cache since the fluid's step
+  const Box<D>* block;  // nodes above others are left alone; null: there are no others
+};
+
+/// The loops for one kernel.
+template <class T, int D>
+struct StencilLoops {
+  int first, points;  // of the kernel
+  void (*locate)(LocateTask<T, D>*);
+  void (*spread)(const SpreadTask<T, D>*);
+  void (*interpolate)(const InterpolateTask<T, D>*);
+  StencilAlong (*along)(int base, T p, T q);
+
+  static const StencilLoops* of(KernelKind kernel);
+};
+
+/// Base nodes and what is kept of the weights, which is computed in double precision before it is rounded to T.
+template <class T, int D, class Kernel>
+struct Locate {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(LocateTask<T, D>* task) {
+    const LocateTask<T, D> t = *task;
+    using Packed = Pack<double, register_bytes / 8>;
+    Packed low = t.size[D - 1], high = outside;
+    int i = t.begin;
+    const auto locate = [&]<class S>(S & lowest, S & highest) __attribute__((always_inline)) {
+      for (; i + S::size <= t.end; i += S::size) {
+        const S last = base<S>(t, i);
+        lowest = min(lowest, last), highest = max(highest, last);
+      }
+    };
+    locate(low, high);
+    Pack<double, 1> lowest = least(low), highest = largest(high);
+    locate(lowest, highest);
+    task->lowest = lowest.vector[0], task->highest = highest.vector[0];
+  }
+
+ private:
+  /// Returns the base along the last axis. Half a spacing beyond a wall is not outside.
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static S base(const LocateTask<T, D>& t, int i) {
+    const S none = outside;
+    S base[D], lowest = 0.0;
+    for (int k = 0; k < D; ++k) {
+      const S shifted = S::load(t.place[k] + i) + Kernel::shift, below = floor(shifted);
+      S p, q;
+      Kernel::keep(shifted - below, p, q);
+      store_as(p, t.to.p[k] + i), store_as(q, t.to.q[k] + i);
+      // One comparison a line: g++ 12 takes combined masks apart element by element.
+      if (t.periodic[k]) {
+        base[k] = wrapped(below, t.size[k]);
+      } else {
+        base[k] = select(below >= S(-1.0), below, none);
+        base[k] = select(below < S(t.size[k]), base[k], none);
+      }
+      base[k] = select(abs(shifted) < S(1e9), base[k], none);  // false for NaN, too
+      store_as(base[k], t.to.base[k] + i);
+      lowest = min(lowest, base[k]);
+    }
+    base[D - 1] = select(lowest > S(outside + 1.0), base[D - 1], none);
+    store_as(base[D - 1], t.to.base[D - 1] + i);
+    return base[D - 1];
+  }
+};
+
+}  // namespace rouleau::core
