@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "core/contact/cell_grid.hpp"
-#include "core/contact/surface_contacts.hpp"
 #include "core/contact/surface_patches.hpp"
+#include "core/contact/triangle_contacts.hpp"
 #include "core/membrane/geometry.hpp"
 
 namespace rouleau::observe {
@@ -55,12 +55,12 @@ std::vector<CellContact> find_touching_cells(const core::Membranes& m, const cor
 }
 
 std::vector<CellContact> find_touching_cells(const core::Surfaces& s, const core::Domain<3>& domain, double reach) {
-  const core::SurfaceContacts all = core::SurfaceContacts::within(reach, s, domain);
-  std::vector<core::SurfaceContact> of_cell;
+  const core::TriangleContacts all = core::TriangleContacts::within(reach, s, domain);
+  std::vector<core::TriangleContact> of_cell;
   std::map<std::tuple<int, int, core::ImageShift>, CellContact> found;
   for (const int cell : s.known_cells()) {
     all.find(cell, s, of_cell);
-    for (const core::SurfaceContact& contact : of_cell) {
+    for (const core::TriangleContact& contact : of_cell) {
       // A pair is known by its first cell and the image of the second; a cell and its own image are seen from both sides.
       const bool turned = contact.other < cell || (contact.other == cell && contact.shift < core::ImageShift{});
       const core::ImageShift image = turned ? -contact.shift : contact.shift;

@@ -9,7 +9,7 @@
 #include "base/text.hpp"
 #include "constants.hpp"
 #include "core/contact/cell_grid.hpp"
-#include "core/contact/surface_contacts.hpp"
+#include "core/contact/triangle_contacts.hpp"
 #include "core/membrane/geometry.hpp"
 #include "placed_cells.hpp"
 #include "scene/driving_flow.hpp"
@@ -226,12 +226,12 @@ double gap_between(const core::Membranes& cells, const core::Domain<2>& domain) 
 }
 
 double gap_between(const core::Surfaces& cells, const core::Domain<3>& domain) {
-  const core::SurfaceContacts contacts = core::SurfaceContacts::within(gap_reach, cells, domain);
+  const core::TriangleContacts contacts = core::TriangleContacts::within(gap_reach, cells, domain);
   double gap = std::numeric_limits<double>::infinity();
-  std::vector<core::SurfaceContact> of_cell;
+  std::vector<core::TriangleContact> of_cell;
   for (int cell = 0; cell < cells.cell_count(); ++cell) {
     contacts.find(cell, cells, of_cell);
-    for (const core::SurfaceContact& contact : of_cell) gap = std::min(gap, contact.distance);
+    for (const core::TriangleContact& contact : of_cell) gap = std::min(gap, contact.distance);
   }
   return gap;
 }

@@ -57,10 +57,10 @@ class Doublet {
     double bulge;    ///< and those of second degree
   };
   [[nodiscard]] Face face() const {
-    std::vector<core::SurfaceContact> contacts;
+    std::vector<core::TriangleContact> contacts;
     contacts_->contacts().find(0, cells_, contacts);
     const double reach = well_.distance - well_.range * std::log(1 - std::sqrt(0.5));
-    std::erase_if(contacts, [&](const core::SurfaceContact& contact) { return contact.distance > reach; });
+    std::erase_if(contacts, [&](const core::TriangleContact& contact) { return contact.distance > reach; });
     const auto count = static_cast<Eigen::Index>(contacts.size());
     Eigen::MatrixXd terms(count, 10);  // 3 of the plane, 3 even, 4 odd
     Eigen::VectorXd height(count);

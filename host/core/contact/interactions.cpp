@@ -242,7 +242,7 @@ int Interactions<3>::find(int cell, const Surfaces& surfaces, Scratch& scratch) 
   List& list = scratch.contacts;
   contacts_.find(cell, surfaces, list.contacts);
   list.distance.clear(), list.normal_velocity.clear(), list.sliding_speed.clear();
-  for (const SurfaceContact& contact : list.contacts) {
+  for (const TriangleContact& contact : list.contacts) {
     list.distance.push_back(contact.distance);
     if (!needs_velocities_) continue;
     Vec<3> velocity = vector_at<3>(surfaces.velocity, contact.node);  // against the facing point, in the last step
@@ -258,10 +258,10 @@ int Interactions<3>::find(int cell, const Surfaces& surfaces, Scratch& scratch) 
 template <>
 Range Interactions<3>::choose(std::size_t law, int cell, const Surfaces& surfaces, Scratch& scratch) const {
   const CellRange& own = surfaces.cells[cell];
-  const std::vector<SurfaceContact>& contacts = scratch.contacts.contacts;
+  const std::vector<TriangleContact>& contacts = scratch.contacts.contacts;
   const bool within = law >= between_cells_, remembers = laws_[law].remembers();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const SurfaceContact& contact = contacts[c];
+    const TriangleContact& contact = contacts[c];
     if (contact.distance > laws_[law].cutoff() || contact.within != within ||
         !acts_between(interactions_[law], own.type, surfaces.cells[contact.other].type))
       continue;
@@ -273,7 +273,8 @@ Range Interactions<3>::choose(std::size_t law, int cell, const Surfaces& surface
 
 template <>
 void Interactions<3>::make_room_for_reactions(int cell) {
-  reactions_[cell].clear();
+  std::erase_if(reactions_[cell], [](const TouchedCell& touched) { return touched.reactions.empty(); });
+  for (TouchedCell& touched : reactions_[cell]) touched.reactions.clear();
 }
 
 template <>
@@ -281,26 +282,26 @@ void Interactions<3>::act(int cell, Surfaces& surfaces, const Scratch& scratch) 
   const auto weight = half_weight(surfaces, cell);
   across_images_[cell] = 0;
   for (std::size_t c = 0; c < scratch.contacts.contacts.size(); ++c) {
-    const SurfaceContact& contact = scratch.contacts.contacts[c];
+    const TriangleContact& contact = scratch.contacts.contacts[c];
     if (scratch.result[c] == 0) continue;
     const Vec<3> force = weight(contact.node) * scratch.result[c] * contact.direction;
     across_images_[cell] += contact.shift.y * force.x();
     for (int k = 0; k < 3; ++k) surfaces.force[k][contact.node] += force[k];
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (contact.weight[k] != 0)
-        reactions_[cell].push_back({contact.other, contact.corner[k], -contact.weight[k] * force});
-    }
+    std::vector<TouchedCell::Reaction>& reactions = TouchedCell::reactions_on(contact.other, reactions_[cell]);
+    for (std::size_t k = 0; k < 3; ++k)
+      if (contact.weight[k] != 0) reactions.push_back({contact.corner[k], -contact.weight[k] * force});
   }
 }
 
-// All cells' reactions in their order, of which each worker takes those on its share of the nodes.
+// In the order of the cells that they come from; each worker those on its share of the cells.
 template <>
 void Interactions<3>::take_reactions(Worker worker, Surfaces& surfaces) {
-  const Range own = surfaces.node_share(worker);
+  const Range own = worker.share(surfaces.cell_count());
   for (const int cell : surfaces.known_cells()) {
-    for (const Reaction& reaction : reactions_[cell]) {
-      if (reaction.node < own.begin || reaction.node >= own.end || !surfaces.owns(reaction.cell)) continue;
-      for (int k = 0; k < 3; ++k) surfaces.force[k][reaction.node] += reaction.force[k];
+    for (const TouchedCell& touched : reactions_[cell]) {
+      if (touched.cell < own.begin || touched.cell >= own.end || !surfaces.owns(touched.cell)) continue;
+      for (const auto& [node, force] : touched.reactions)
+        for (int k = 0; k < 3; ++k) surfaces.force[k][node] += force[k];
     }
   }
 }

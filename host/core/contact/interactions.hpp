@@ -6,25 +6,16 @@
 #include <vector>
 
 #include "base/worker.hpp"
-#include "contact.hpp"
 #include "contact_law.hpp"
 #include "core/domain/ranks.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/surface/surfaces.hpp"
 #include "cutoffs.hpp"
-#include "surface_contacts.hpp"
+#include "reactions.hpp"
+#include "segment_contacts.hpp"
+#include "triangle_contacts.hpp"
 
 namespace rouleau::core {
-
-/// What acts on one node of another cell.
-struct Reaction {
-  int cell, node;  ///< `node` of all cells belongs to `cell`
-  Vec<3> force;
-};
-/// What acts on the nodes of other cells that a cell's pairs touch (NeighbourList::Pair::reaction).
-struct TouchedNodes {
-  std::vector<double> x, y;
-};
 
 /// Closest points, and how reactions are kept.
 template <int D>
@@ -32,18 +23,18 @@ struct ContactsOf;
 template <>
 struct ContactsOf<2> {
   using Cells = Membranes;
-  using Finder = Contacts;
+  using Finder = SegmentContacts;
   using List = ContactList;
   using Reactions = TouchedNodes;
 };
 template <>
 struct ContactsOf<3> {
   using Cells = Surfaces;
-  using Finder = SurfaceContacts;
+  using Finder = TriangleContacts;
   struct List : ContactValues {
-    std::vector<SurfaceContact> contacts;
+    std::vector<TriangleContact> contacts;
   };
-  using Reactions = std::vector<Reaction>;
+  using Reactions = std::vector<TouchedCell>;
 };
 
 /// Node i with rest measure w (in two dimensions a length, in three an area) at distance r of its closest point on another

@@ -9,7 +9,7 @@
 #include "core/membrane/displacement_watch.hpp"
 #include "core/membrane/membranes.hpp"
 #include "cutoffs.hpp"
-#include "segment_cache.hpp"
+#include "segment_table.hpp"
 
 namespace rouleau::core {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "contact_list.hpp"
-#include "segment_cache.hpp"
+#include "segment_table.hpp"
 
 namespace rouleau::core {
 

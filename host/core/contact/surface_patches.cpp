@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "surface_contacts.hpp"
+#include "triangle_contacts.hpp"
 
 namespace rouleau::core {
 

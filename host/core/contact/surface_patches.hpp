@@ -16,7 +16,7 @@ namespace rouleau::core {
 
 /// Surfaces in patches, of nodes and of triangles that follow each other and so lie side by side in most meshes, with a
 /// box around each: only where boxes come nearer than what has been found are the points themselves looked at.
-/// Distances are those of SurfaceContacts, to the bit.
+/// Distances are those of TriangleContacts, to the bit.
 class SurfacePatches {
  public:
   /// Both outlive this, and nothing moves meanwhile. Of cells that are not known nothing is asked.

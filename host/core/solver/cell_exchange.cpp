@@ -48,6 +48,14 @@ void transfer_nodes(Values& values, const CellRange& cell, Transfer transfer) {
   transfer(values.data() + cell.first, static_cast<std::size_t>(cell.count));
 }
 
+template <class Message>
+void transfer_reactions(TouchedCell& touched, Message& message) {
+  std::size_t count = touched.reactions.size();
+  message(&touched.cell, 1), message(&count, 1);
+  touched.reactions.resize(count);
+  message(touched.reactions.data(), count);
+}
+
 /// Gives each of `peers` what transfer(rank, cells, message) packs of the cells in one of its lists; those with an empty list
 /// are left out.
 template <class Packer, class Peer, class Transfer>
@@ -228,13 +236,12 @@ void CellExchange<D>::send_reactions(Interactions<D>& interactions) const {
           if (ghosts_.owner(other) == to) message(x, count), message(y, count);
         });
       } else {
-        std::vector<Reaction> there;
-        for (const auto& reaction : interactions.reactions(c)) {
-          if (ghosts_.owner(reaction.cell) == rank) there.push_back(reaction);
-        }
-        const std::size_t count = there.size();
+        const auto is_there = [&, to = rank](const TouchedCell& touched) { return ghosts_.owner(touched.cell) == to; };
+        std::vector<TouchedCell>& touched = interactions.reactions(c);
+        const auto count = static_cast<std::size_t>(std::count_if(touched.begin(), touched.end(), is_there));
         message(&count, 1);
-        message(there.data(), count);
+        for (TouchedCell& cell : touched)
+          if (is_there(cell)) transfer_reactions(cell, message);
       }
     }
     ranks_.transport->send(rank, message.take());
@@ -255,7 +262,7 @@ void CellExchange<D>::receive_reactions(const Cells& cells, Interactions<D>& int
         std::size_t count = 0;
         message(&count, 1);
         interactions.reactions(c).resize(count);
-        message(interactions.reactions(c).data(), count);
+        for (TouchedCell& touched : interactions.reactions(c)) transfer_reactions(touched, message);
       }
     }
   }

@@ -1,11 +1,12 @@
 // The contacts of a cell, by value.
 #pragma once
 
-#include "core/contact/contact.hpp"
+#include "core/contact/segment_contacts.hpp"
 
 namespace rouleau::test {
 
-inline core::ContactList contact_list(const core::Contacts& contacts, const core::Membranes& membranes, int cell) {
+inline core::ContactList contact_list(const core::SegmentContacts& contacts, const core::Membranes& membranes,
+                                      int cell) {
   core::ContactList list;
   contacts.find(cell, membranes, list);
   return list;

@@ -15,7 +15,7 @@ constexpr double reach = 10;
 std::vector<ContactList> search(const Membranes& m) {
   Cutoffs cutoffs(1);
   cutoffs.raise(0, 0, reach);
-  Contacts contacts(m, cutoffs, periodic_box(120));
+  SegmentContacts contacts(m, cutoffs, periodic_box(120));
   contacts.measure({}, m);
   contacts.refresh({}, m);
   std::vector<ContactList> found;

@@ -73,10 +73,10 @@ void move(Surfaces& s, int cell, const Vec<3>& by) {
 /// Gives nodes bonds that vanish towards the cutoff.
 void set_bonds(const Interactions<3>& forces, Surfaces& s) {
   for (int cell = 0; cell < s.cell_count(); ++cell) {
-    std::vector<SurfaceContact> contacts;
+    std::vector<TriangleContact> contacts;
     forces.contacts().find(cell, s, contacts);
     for (ContactState& state : s.contacts.of_cell[cell]) {
-      for (const SurfaceContact& contact : contacts) {
+      for (const TriangleContact& contact : contacts) {
         const int node = contact.node - s.cells[cell].first;
         if (contact.other == state.other && state.shift == contact.shift)
           state.value[node] = contact.distance < cutoff - 0.5 ? 0.5 + 0.01 * node : 0;
@@ -94,10 +94,10 @@ TEST_CASE("bonds between surfaces at a fixed distance follow the solution of the
   for (const int steps : {1, 9, 40, 2000}) {
     for (; done < steps; ++done) run(forces, s);
     for (const int cell : {0, 1}) {
-      std::vector<SurfaceContact> contacts;
+      std::vector<TriangleContact> contacts;
       forces.contacts().find(cell, s, contacts);
       std::set<int> images;
-      for (const SurfaceContact& contact : contacts) {
+      for (const TriangleContact& contact : contacts) {
         images.insert(contact.shift.z);
         REQUIRE(value_at(s.contacts.of_cell[cell], contact.node - s.cells[cell].first, contact.other, contact.shift) ==
                 Approx(bonds_after(steps, contact.distance)).epsilon(1e-11));
@@ -119,10 +119,10 @@ TEST_CASE("bonds of surfaces stay with a node while the other one slides past, a
     move(s, 1, {0.03, 0.01, 0});
     run(forces, s);
   }
-  std::vector<SurfaceContact> contacts;
+  std::vector<TriangleContact> contacts;
   forces.contacts().find(0, s, contacts);
   int kept = 0;
-  for (const SurfaceContact& contact : contacts) {
+  for (const TriangleContact& contact : contacts) {
     const double was = value_at(before, contact.node, contact.other, contact.shift);
     if (was <= 0 || contact.distance > cutoff - 1) continue;
     CHECK(value_at(s.contacts.of_cell[0], contact.node, contact.other, contact.shift) == was);
@@ -229,14 +229,14 @@ TEST_CASE("surfaces that slide against each other see the part of the velocity t
   Interactions<3> forces(s, {{{0, 0}, test::rubbing(2, cutoff)}}, domain);
   CHECK(forces.needs_velocities());
   run(forces, s);
-  const SurfaceContacts all = SurfaceContacts::within(cutoff, s, domain);
+  const TriangleContacts all = TriangleContacts::within(cutoff, s, domain);
   Vec<3> on_first = Vec<3>::Zero(), expected = Vec<3>::Zero();
   for (int i = 0; i < s.cells[1].first; ++i) on_first += Vec<3>(s.force[0][i], s.force[1][i], s.force[2][i]);
   double slowest = 1, fastest = 0;
   for (const int cell : {0, 1}) {
-    std::vector<SurfaceContact> found;
+    std::vector<TriangleContact> found;
     all.find(cell, s, found);
-    for (const SurfaceContact& contact : found) {
+    for (const TriangleContact& contact : found) {
       if (contact.distance > cutoff) continue;
       const Vec<3> across = motion.cross(contact.direction);  // as long as what is not along the distance
       const double area = s.type_of(0).node_area[contact.node - s.cells[cell].first];
@@ -272,8 +272,8 @@ TEST_CASE("the normal velocity at a contact of surfaces is the rate at which the
       moved.position[0][i] += time * s.velocity[0][i], moved.position[1][i] += time * s.velocity[1][i],
           moved.position[2][i] += time * s.velocity[2][i];
     }
-    const SurfaceContacts all = SurfaceContacts::within(cutoff + 0.1, moved, domain);
-    std::vector<SurfaceContact> found[2];
+    const TriangleContacts all = TriangleContacts::within(cutoff + 0.1, moved, domain);
+    std::vector<TriangleContact> found[2];
     for (const int cell : {0, 1}) all.find(cell, moved, found[cell]);
     return std::pair(found[0], found[1]);
   };
@@ -281,12 +281,12 @@ TEST_CASE("the normal velocity at a contact of surfaces is the rate at which the
   const auto before = contacts_at(-h), now = contacts_at(0), after = contacts_at(h);
   for (const auto& [here, earlier, later] :
        {std::tuple(now.first, before.first, after.first), {now.second, before.second, after.second}}) {
-    const auto same = [](const SurfaceContact& a, const SurfaceContact& b) {
+    const auto same = [](const TriangleContact& a, const TriangleContact& b) {
       return a.node == b.node && a.other == b.other && a.shift == b.shift;
     };
-    for (const SurfaceContact& contact : here) {
+    for (const TriangleContact& contact : here) {
       if (contact.distance > cutoff) continue;
-      const auto in = [&](const std::vector<SurfaceContact>& list) {
+      const auto in = [&](const std::vector<TriangleContact>& list) {
         return std::find_if(list.begin(), list.end(), [&](const auto& c) { return same(c, contact); })->distance;
       };
       const double rate = (in(later)-in(earlier)) / (2 * h);

@@ -76,9 +76,9 @@ TEST_CASE(
   Surfaces s = of_shape(shape::biconcave_disc(8, 6));
   s.largest_step.assign(1, 0.0);
   const double cutoff = 2.5;
-  SurfaceContacts contacts(s, Cutoffs(1), domain, {cutoff}), shared(s, Cutoffs(1), domain, {cutoff});
+  TriangleContacts contacts(s, Cutoffs(1), domain, {cutoff}), shared(s, Cutoffs(1), domain, {cutoff});
   const SelfReach reach(s.type_of(0), cutoff);
-  std::vector<SurfaceContact> found, by_three;
+  std::vector<TriangleContact> found, by_three;
   long touching = 0;
   for (int step = 0; step < 40; ++step) {
     contacts.measure({}, s);

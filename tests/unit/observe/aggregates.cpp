@@ -7,8 +7,8 @@
 #include <numbers>
 #include <random>
 
-#include "core/contact/surface_contacts.hpp"
 #include "core/contact/surface_crossing.hpp"
+#include "core/contact/triangle_contacts.hpp"
 #include "core/membrane/geometry.hpp"
 #include "scene/output_schedule.hpp"
 #include "shape/surface.hpp"
@@ -154,11 +154,11 @@ TEST_CASE("smallest gaps of surfaces are those of a search through all contacts 
     double most = domain.period(0) / 2;
     for (int k = 1; k < 3; ++k) most = domain.periodic[k] ? std::min(most, domain.period(k) / 2) : most;
     std::vector<double> expected(s.cells.size(), std::numeric_limits<double>::infinity());
-    const SurfaceContacts all = SurfaceContacts::within(most, s, domain);
-    std::vector<SurfaceContact> of_cell;
+    const TriangleContacts all = TriangleContacts::within(most, s, domain);
+    std::vector<TriangleContact> of_cell;
     for (int cell = 0; cell < count; ++cell) {
       all.find(cell, s, of_cell);
-      for (const SurfaceContact& contact : of_cell) {
+      for (const TriangleContact& contact : of_cell) {
         for (const int both : {cell, contact.other}) expected[both] = std::min(expected[both], contact.distance);
       }
     }

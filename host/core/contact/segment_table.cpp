@@ -1,4 +1,4 @@
-#include "segment_cache.hpp"
+#include "segment_table.hpp"
 
 #include <algorithm>
 #include <rouleau/dispatch.hpp>

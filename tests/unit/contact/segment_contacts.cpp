@@ -1,5 +1,5 @@
 // Closest points: the lists against brute force while cells move.
-#include "core/contact/contact.hpp"
+#include "core/contact/segment_contacts.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double cutoff = 18;
 
-void run(Contacts& contacts, const Membranes& m, int workers = 1) {
+void run(SegmentContacts& contacts, const Membranes& m, int workers = 1) {
   run_pass(workers, [&](Worker worker) { contacts.measure(worker, m); });
   run_pass(workers, [&](Worker worker) { contacts.refresh(worker, m); });
 }
@@ -59,7 +59,7 @@ struct Tally {
 };
 
 /// Every node against every cell and every image near enough.
-void compare(const Contacts& contacts, const Membranes& m, const core::Domain<2>& domain, Tally& tally) {
+void compare(const SegmentContacts& contacts, const Membranes& m, const core::Domain<2>& domain, Tally& tally) {
   for (int c = 0; c < static_cast<int>(m.cells.size()); ++c) {
     const CellRange& cell = m.cells[static_cast<std::size_t>(c)];
     const ContactList list = contact_list(contacts, m, c);
@@ -120,7 +120,7 @@ TEST_CASE("closest points are those of brute force on moving, turning, deforming
     Cutoffs cutoffs(1);
     cutoffs.raise(0, 0, cutoff);
     if (known) m.largest_step.assign(m.cells.size(), 0.001 * speed);
-    Contacts contacts(m, cutoffs, domain);
+    SegmentContacts contacts(m, cutoffs, domain);
     for (int step = 0; step < 12; ++step) {
       run(contacts, m, 1 + step % 3);
       compare(contacts, m, domain, tally);
@@ -160,7 +160,7 @@ TEST_CASE("a node that is nowhere makes no contact and spoils no other, over per
     m.largest_step[broken] = std::nan("");
     Cutoffs cutoffs(1);
     cutoffs.raise(0, 0, cutoff);
-    Contacts contacts(m, cutoffs, periodic_box(90, 70));
+    SegmentContacts contacts(m, cutoffs, periodic_box(90, 70));
     run(contacts, m);
     for (int c = 0; c < 3; ++c) {
       const ContactList list = contact_list(contacts, m, c);
@@ -212,7 +212,7 @@ TEST_CASE("a remembered direction and place belong to the distance") {
   deform(m, random, 2, 0.1);
   Cutoffs cutoffs(1);
   cutoffs.raise(0, 0, cutoff);
-  Contacts contacts(m, cutoffs, periodic_box(10000));
+  SegmentContacts contacts(m, cutoffs, periodic_box(10000));
   run(contacts, m);
   for (int c = 0; c < 2; ++c) {
     const ContactList list = contact_list(contacts, m, c);

@@ -95,19 +95,19 @@ TEST_CASE("contacts of surfaces are the closest of all triangles, while cells mo
     Surfaces s = pair(random);
     Cutoffs cutoffs(2);
     for (int a = 0; a < 2; ++a) cutoffs.raise(a, 1 - a, cutoff), cutoffs.raise(a, a, cutoff);
-    SurfaceContacts contacts(s, cutoffs, domain);
+    TriangleContacts contacts(s, cutoffs, domain);
     s.largest_step.assign(2, 0.0);
     for (int step = 0; step < 16; ++step) {
       const int workers = 1 + step % 2;
       for (int w = 0; w < workers; ++w) contacts.measure({w, workers}, s);
-      std::vector<SurfaceContact> lists[2];
+      std::vector<TriangleContact> lists[2];
       for (int w = 0; w < workers; ++w) {  // one may find contacts before another has made its lists
         contacts.refresh({w, workers}, s);
         const Range cells = Worker{w, workers}.share(2);
         for (int cell = cells.begin; cell < cells.end; ++cell) contacts.find(cell, s, lists[cell]);
       }
       for (int cell = 0; cell < 2; ++cell) {
-        const std::vector<SurfaceContact>& list = lists[cell];
+        const std::vector<TriangleContact>& list = lists[cell];
         std::size_t next = 0;
         for (int node = s.cells[cell].first; node < s.cells[cell].end(); ++node) {
           const Vec<3> place(s.position[0][node], s.position[1][node], s.position[2][node]);
@@ -150,11 +150,11 @@ TEST_CASE("in a box narrower than the cutoff all images of a surface count") {
   for (const double cutoff : {2.5, 4.5, 6.0, 9.0}) {
     Cutoffs cutoffs(1);
     cutoffs.raise(0, 0, cutoff);
-    SurfaceContacts contacts(s, cutoffs, narrow);
+    TriangleContacts contacts(s, cutoffs, narrow);
     contacts.measure({}, s);
     contacts.refresh({}, s);
     std::size_t expected = 0, found = 0;
-    std::vector<SurfaceContact> list;
+    std::vector<TriangleContact> list;
     for (int cell = 0; cell < 2; ++cell) {
       contacts.find(cell, s, list);
       found += list.size();

@@ -1,4 +1,4 @@
-#include "surface_contacts.hpp"
+#include "triangle_contacts.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -20,8 +20,8 @@ float rounded_down(double value) { return static_cast<float>(value * (1 - 0x1p-2
 
 }  // namespace
 
-SurfaceContacts::SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain,
-                                 const std::vector<double>& self_cutoffs)
+TriangleContacts::TriangleContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain,
+                                   const std::vector<double>& self_cutoffs)
     : cutoffs_(std::move(cutoffs)),
       domain_(domain),
       watch_(surfaces),
@@ -35,26 +35,26 @@ SurfaceContacts::SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, cons
 }
 
 /// Of a cell from another's image, or within it.
-double SurfaceContacts::cutoff(const Surfaces& surfaces, int cell, int other, bool within) const {
+double TriangleContacts::cutoff(const Surfaces& surfaces, int cell, int other, bool within) const {
   const int type = surfaces.cells[cell].type;
   if (!within) return cutoffs_(type, surfaces.cells[other].type);
   return !self_reach_.empty() && self_reach_[type] ? self_reach_[type]->cutoff() : 0;
 }
 
-SurfaceContacts SurfaceContacts::within(double reach, const Surfaces& surfaces, const Domain<3>& domain) {
+TriangleContacts TriangleContacts::within(double reach, const Surfaces& surfaces, const Domain<3>& domain) {
   const int types = static_cast<int>(surfaces.types.size());
   Cutoffs cutoffs(types);
   for (int a = 0; a < types; ++a) {
     for (int b = 0; b <= a; ++b) cutoffs.raise(a, b, reach);
   }
-  SurfaceContacts contacts(surfaces, std::move(cutoffs), domain);
+  TriangleContacts contacts(surfaces, std::move(cutoffs), domain);
   contacts.of_all_ = true;
   contacts.measure({}, surfaces);
   contacts.refresh({}, surfaces);
   return contacts;
 }
 
-void SurfaceContacts::measure(Worker worker, const Surfaces& surfaces) {
+void TriangleContacts::measure(Worker worker, const Surfaces& surfaces) {
   watch_.measure(worker, surfaces);
   const CellNumbers cells = surfaces.known_cells(worker);
   for (const int cell : cells) {
@@ -66,7 +66,7 @@ void SurfaceContacts::measure(Worker worker, const Surfaces& surfaces) {
 
 /// By how much two cells may have come nearer to each other since their distances were measured. While lists are made anew
 /// others' paths say nothing: those workers may be ahead or behind.
-double SurfaceContacts::travelled(int cell, int other) const {
+double TriangleContacts::travelled(int cell, int other) const {
   if (renewed_[cell] != 0) return 0;
   const double path = path_[cell] + path_[other];
   if (std::isfinite(path)) return path;
@@ -74,7 +74,7 @@ double SurfaceContacts::travelled(int cell, int other) const {
   return moved[cell] + moved[other];
 }
 
-void SurfaceContacts::refresh(Worker worker, const Surfaces& surfaces) {
+void TriangleContacts::refresh(Worker worker, const Surfaces& surfaces) {
   const bool renew = watch_.exceeded();
   const CellNumbers cells = surfaces.known_cells(worker);
   for (const int cell : cells) renewed_[cell] = renew;
@@ -95,13 +95,13 @@ void SurfaceContacts::refresh(Worker worker, const Surfaces& surfaces) {
   if (worker.first()) ++renewals_;
 }
 
-void SurfaceContacts::forget(const Surfaces& surfaces, std::span<const Range> nodes) {
+void TriangleContacts::forget(const Surfaces& surfaces, std::span<const Range> nodes) {
   watch_.forget(surfaces, nodes);
   surfaces.forget_unknown_of(lists_);
 }
 
-void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const std::vector<int>& near,
-                                      const std::vector<BoundingBox<3>>& boxes, double skin) {
+void TriangleContacts::list_candidates(int cell, const Surfaces& surfaces, const std::vector<int>& near,
+                                       const std::vector<BoundingBox<3>>& boxes, double skin) {
   CandidateList& list = lists_[cell];
   const CellRange& own = surfaces.cells[cell];
   const auto place_of = [&](int node) { return vector_at<3>(surfaces.position, node); };
@@ -156,7 +156,7 @@ void SurfaceContacts::list_candidates(int cell, const Surfaces& surfaces, const 
   }
 }
 
-std::span<SurfaceContacts::Candidate> SurfaceContacts::CandidateList::next(const Search& search) {
+std::span<TriangleContacts::Candidate> TriangleContacts::CandidateList::next(const Search& search) {
   Group& group = groups[search.group];
   if (search.looked < 0) return group.first;
   const int from = group.begin + search.looked;
@@ -164,7 +164,7 @@ std::span<SurfaceContacts::Candidate> SurfaceContacts::CandidateList::next(const
 }
 
 /// Those that have been looked at have new distances: the nearest of them are the first, the others are sorted again.
-void SurfaceContacts::sort_in(CandidateList& list, const Search& search) {
+void TriangleContacts::sort_in(CandidateList& list, const Search& search) {
   Group& group = list.groups[search.group];
   if (search.looked > 0) {
     Candidate* const others = list.candidates.data() + group.begin;
@@ -186,7 +186,7 @@ void SurfaceContacts::sort_in(CandidateList& list, const Search& search) {
 }
 
 /// Of all groups that are being searched: their next candidates.
-void SurfaceContacts::look_at_next(const Surfaces& surfaces, CandidateList& list) const {
+void TriangleContacts::look_at_next(const Surfaces& surfaces, CandidateList& list) const {
   const auto count = static_cast<int>(list.searching.size());
   ClosestPoints& points = list.points;
   points.resize(count * at_once);
@@ -235,7 +235,7 @@ void SurfaceContacts::look_at_next(const Surfaces& surfaces, CandidateList& list
   list.searching.resize(left);
 }
 
-void SurfaceContacts::find(int cell, const Surfaces& surfaces, std::vector<SurfaceContact>& contacts) const {
+void TriangleContacts::find(int cell, const Surfaces& surfaces, std::vector<TriangleContact>& contacts) const {
   contacts.clear();
   CandidateList& list = lists_[cell];
   for (Image& image : list.images) {
@@ -265,19 +265,19 @@ void SurfaceContacts::find(int cell, const Surfaces& surfaces, std::vector<Surfa
   }
 }
 
-SurfaceContact SurfaceContacts::contact(const Search& search, const CandidateList& list, const Surfaces& surfaces) {
+TriangleContact TriangleContacts::contact(const Search& search, const CandidateList& list, const Surfaces& surfaces) {
   const Group& group = list.groups[search.group];
   const Image& image = list.images[group.image];
   const auto& [i, j, k] = image.triangles[search.closest];
   const double root = std::sqrt(search.square);
-  SurfaceContact contact{group.node,
-                         image.other,
-                         image.shift,
-                         image.within,
-                         {image.first_node + i, image.first_node + j, image.first_node + k},
-                         search.weight,
-                         std::max(root, least_distance),
-                         {}};
+  TriangleContact contact{group.node,
+                          image.other,
+                          image.shift,
+                          image.within,
+                          {image.first_node + i, image.first_node + j, image.first_node + k},
+                          search.weight,
+                          std::max(root, least_distance),
+                          {}};
   if (root > least_distance) {
     contact.direction = search.away / root;
   } else {

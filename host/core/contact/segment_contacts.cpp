@@ -1,4 +1,4 @@
-#include "contact.hpp"
+#include "segment_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -133,20 +133,22 @@ struct Search {
 
 }  // namespace
 
-Contacts::Contacts(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain,
-                   const std::vector<double>& self_cutoffs)
+SegmentContacts::SegmentContacts(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain,
+                                 const std::vector<double>& self_cutoffs)
     : neighbours_(membranes, std::move(cutoffs), domain), segments_(membranes) {
   if (!self_cutoffs.empty()) self_contacts_.emplace(membranes, self_cutoffs);
 }
 
-void Contacts::measure(Worker worker, const Membranes& membranes) {
+void SegmentContacts::measure(Worker worker, const Membranes& membranes) {
   neighbours_.measure(worker, membranes);
   segments_.update(worker, membranes);
 }
 
-void Contacts::refresh(Worker worker, const Membranes& membranes) { neighbours_.refresh(worker, membranes, segments_); }
+void SegmentContacts::refresh(Worker worker, const Membranes& membranes) {
+  neighbours_.refresh(worker, membranes, segments_);
+}
 
-void Contacts::find(int cell, const Membranes& membranes, ContactList& list) const {
+void SegmentContacts::find(int cell, const Membranes& membranes, ContactList& list) const {
   static const auto function = Dispatch<Search, SearchTask*>::pick();
   const NeighbourList::CandidateList& candidates = neighbours_.list(cell);
   const CellRange& own = membranes.cells[cell];
@@ -183,7 +185,7 @@ void Contacts::find(int cell, const Membranes& membranes, ContactList& list) con
   if (touches_itself) self_contacts_->append(own, membranes, list);
 }
 
-void Contacts::measure_velocities(int cell, const Membranes& membranes, ContactList& list) const {
+void SegmentContacts::measure_velocities(int cell, const Membranes& membranes, ContactList& list) const {
   for (auto* values : {&list.normal_velocity, &list.tangential_velocity, &list.sliding_speed})
     values->resize(list.distance.size());
   const std::vector<double>&u = membranes.velocity[0], &v = membranes.velocity[1];

@@ -22,7 +22,7 @@
 namespace rouleau::core {
 
 /// A node X of a cell and the closest point P = sum of weight[k] X_corner[k] on another cell's image.
-struct SurfaceContact {
+struct TriangleContact {
   int node;                   ///< index in Surfaces
   int other;                  ///< cell; the cell itself, for one of its images or, not shifted, for its own surface
   ImageShift shift;           ///< of that image
@@ -41,21 +41,21 @@ struct SurfaceContact {
 /// triangle is a set of convex combinations of its corners, too. Of each a bound of its last known distance is kept, which has
 /// changed by no more than both cells' nodes have travelled since: most need not be looked at. Those that are, are looked at
 /// three at a time, the nearest first.
-class SurfaceContacts {
+class TriangleContacts {
  public:
   /// `self_cutoffs`: of each type, within a cell; 0, and where there are none: cells do not touch themselves.
-  SurfaceContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain,
-                  const std::vector<double>& self_cutoffs = {});
+  TriangleContacts(const Surfaces& surfaces, Cutoffs cutoffs, const Domain<3>& domain,
+                   const std::vector<double>& self_cutoffs = {});
 
   /// Of all cells within one reach, whatever their types and owners, at the present positions: find() may be called.
-  static SurfaceContacts within(double reach, const Surfaces& surfaces, const Domain<3>& domain);
+  static TriangleContacts within(double reach, const Surfaces& surfaces, const Domain<3>& domain);
 
   /// Pass over cells: whether a node has moved too far for the lists.
   void measure(Worker worker, const Surfaces& surfaces);
   /// Pass over cells, after a barrier: their lists, if they have to be made anew.
   void refresh(Worker worker, const Surfaces& surfaces);
   /// Then: the contacts of a cell of this rank, by node, then by the other cell and its image. A cell's by one worker at a time.
-  void find(int cell, const Surfaces& surfaces, std::vector<SurfaceContact>& contacts) const;
+  void find(int cell, const Surfaces& surfaces, std::vector<TriangleContact>& contacts) const;
 
   /// With other ranks, before measure(): they agree on whether a node has moved too far.
   [[nodiscard]] DisplacementWatch& watch() { return watch_; }
@@ -124,7 +124,7 @@ class SurfaceContacts {
   void list_candidates(int cell, const Surfaces& surfaces, const std::vector<int>& near,
                        const std::vector<BoundingBox<3>>& boxes, double skin);
   void look_at_next(const Surfaces& surfaces, CandidateList& list) const;
-  static SurfaceContact contact(const Search& search, const CandidateList& list, const Surfaces& surfaces);
+  static TriangleContact contact(const Search& search, const CandidateList& list, const Surfaces& surfaces);
 
   Cutoffs cutoffs_;
   std::vector<std::unique_ptr<const SelfReach>> self_reach_;  // of each type; null: it does not touch itself; or empty

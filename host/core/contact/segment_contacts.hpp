@@ -8,16 +8,17 @@
 #include "contact_list.hpp"
 #include "core/membrane/membranes.hpp"
 #include "neighbour_list.hpp"
-#include "segment_cache.hpp"
+#include "segment_table.hpp"
 #include "self_contacts.hpp"
 
 namespace rouleau::core {
 
 /// Exact closest points of all pairs within the cutoffs.
-class Contacts {
+class SegmentContacts {
  public:
   /// `self_cutoffs`: of each type, within a cell; 0, and where there are none: cells do not touch themselves.
-  Contacts(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain, const std::vector<double>& self_cutoffs = {});
+  SegmentContacts(const Membranes& membranes, Cutoffs cutoffs, Domain<2> domain,
+                  const std::vector<double>& self_cutoffs = {});
 
   /// Pass over cells: their segments, and whether a node has moved too far for the neighbour lists.
   void measure(Worker worker, const Membranes& membranes);
