@@ -76,29 +76,34 @@ struct Locate {
     using Packed = Pack<double, register_bytes / 8>;
     Packed low = t.size[D - 1], high = outside;
     int i = t.begin;
-    const auto locate = [&]<class S>(S & lowest, S & highest) __attribute__((always_inline)) {
-      for (; i + S::size <= t.end; i += S::size) {
-        const S last = base<S>(t, i);
-        lowest = min(lowest, last), highest = max(highest, last);
-      }
-    };
-    locate(low, high);
+    for (; i + Packed::size <= t.end; i += Packed::size) {
+      const Packed last = base<Packed>(t, i, Packed::size);
+      low = min(low, last), high = max(high, last);
+    }
+    if (D == 2 && i < t.end) {  // wide packs have another square root: checkpoints of outlines go on with theirs
+      const Packed last = base<Packed>(t, i, t.end - i);
+      low = min(low, last), high = max(high, last);
+      i = t.end;
+    }
     Pack<double, 1> lowest = least(low), highest = largest(high);
-    locate(lowest, highest);
+    for (; i < t.end; ++i) {
+      const Pack<double, 1> last = base<Pack<double, 1>>(t, i, 1);
+      lowest = min(lowest, last), highest = max(highest, last);
+    }
     task->lowest = lowest.vector[0], task->highest = highest.vector[0];
   }
 
  private:
-  /// Returns the base along the last axis. Half a spacing beyond a wall is not outside.
+  /// Of the first `valid` nodes of a pack; returns the base along the last axis. Half a spacing beyond a wall is not outside.
   template <class S>
-  ROULEAU_ALWAYS_INLINE static S base(const LocateTask<T, D>& t, int i) {
+  ROULEAU_ALWAYS_INLINE static S base(const LocateTask<T, D>& t, int i, int valid) {
     const S none = outside;
     S base[D], lowest = 0.0;
     for (int k = 0; k < D; ++k) {
-      const S shifted = S::load(t.place[k] + i) + Kernel::shift, below = floor(shifted);
+      const S shifted = get<S>(t.place[k] + i, valid) + Kernel::shift, below = floor(shifted);
       S p, q;
       Kernel::keep(shifted - below, p, q);
-      store_as(p, t.to.p[k] + i), store_as(q, t.to.q[k] + i);
+      put(p, t.to.p[k] + i, valid), put(q, t.to.q[k] + i, valid);
       // One comparison a line: g++ 12 takes combined masks apart element by element.
       if (t.periodic[k]) {
         base[k] = wrapped(below, t.size[k]);
@@ -107,12 +112,28 @@ struct Locate {
         base[k] = select(below < S(t.size[k]), base[k], none);
       }
       base[k] = select(abs(shifted) < S(1e9), base[k], none);  // false for NaN, too
-      store_as(base[k], t.to.base[k] + i);
+      put(base[k], t.to.base[k] + i, valid);
       lowest = min(lowest, base[k]);
     }
     base[D - 1] = select(lowest > S(outside + 1.0), base[D - 1], none);
-    store_as(base[D - 1], t.to.base[D - 1] + i);
+    put(base[D - 1], t.to.base[D - 1] + i, valid);
     return base[D - 1];
+  }
+  /// The last of the values stands for those that are missing.
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static S get(const double* values, int valid) {
+    if (valid == S::size) return S::load(values);
+    double all[S::size];
+    for (int k = 0; k < S::size; ++k) all[k] = values[std::min(k, valid - 1)];
+    return S::load(all);
+  }
+  /// Writes the first `valid` of the values, converted.
+  template <class S, class To>
+  ROULEAU_ALWAYS_INLINE static void put(const S& values, To* to, int valid) {
+    if (valid == S::size) return store_as(values, to);
+    To all[S::size];
+    store_as(values, all);
+    std::copy_n(all, valid, to);
   }
 };
 
