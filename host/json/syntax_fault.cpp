@@ -19,7 +19,7 @@ std::string remedy_of(std::string_view text, std::size_t at, bool wants_end) {
   if (c == '/' || c == '#') return "JSON has no comments; remove this one";
   if ((c == '}' || c == ']') && last == ',') return std::string("remove the comma before this '") + c + "'";
   if (c == '\'') return "write text in double quotes, not in single ones";
-  if (wants_end && (c == '"' || c == '{' || c == '[' || (is_digit(c) && !is_digit(last))))
+  if (wants_end && (c == '"' || c == '{' || c == '[' || (is_digit(c) && !is_digit(text[at - 1]))))
     return "a ',' is missing before it";
   if (c == '+' || c == '-' || c == '.' || is_digit(c)) return "numbers are written like 12, -0.5 or 6e-3";
   if (!is_letter(c) && c != '%') return "";
@@ -47,7 +47,8 @@ TextFault syntax_fault(std::string_view text, const std::string& words, std::siz
     remedy = std::string("the file ends before the '") + text[opened] + "' of line " +
              std::to_string(position(text, opened).line) + " is closed";
   } else if (!ended) {
-    if (words.find(" - unexpected ") != std::string::npos) at -= std::min(at, std::max<std::size_t>(token, 1) - 1);
+    if (words.find("unexpected string") != std::string::npos || words.find("unexpected number") != std::string::npos)
+      at -= std::min(at, std::max<std::size_t>(token, 1) - 1);
     if (words.find("invalid literal") != std::string::npos)
       while (at > 0 && is_letter(text[at - 1])) --at;
     const bool wants_end = words.ends_with("expected '}'") || words.ends_with("expected ']'");

@@ -122,29 +122,6 @@ ExtremeCase read_case(const json::Document& document, std::size_t index, const L
   return extreme;
 }
 
-/// Files and folders of "scenes", the latter with all below them, in order.
-std::vector<fs::path> read_scene_list(const json::Document& document, const fs::path& folder) {
-  std::vector<fs::path> scenes;
-  const Json& given = document.root()["scenes"];
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    const fs::path named = folder / given[i].get<std::string>();
-    if (!fs::exists(named))
-      throw Error(Cause::bad_input, document.place(json::child_pointer("/scenes", i)),
-                  "there is no " + named.string() + "; the path begins with the limits file's folder");
-    if (!fs::is_directory(named)) {
-      scenes.push_back(named);
-      continue;
-    }
-    std::vector<fs::path> below;
-    for (const auto& entry : fs::recursive_directory_iterator(named)) {
-      if (entry.is_regular_file() && entry.path().extension() == ".json") below.push_back(entry.path());
-    }
-    std::sort(below.begin(), below.end());
-    scenes.insert(scenes.end(), below.begin(), below.end());
-  }
-  return scenes;
-}
-
 HealthCriteria read_criteria(const Json& given) {
   HealthCriteria criteria;
   criteria.area_drift = given.value("area_drift", criteria.area_drift);
@@ -177,7 +154,6 @@ LimitsFile read_limits(const fs::path& file) {
     for (std::size_t i = 0; i < root["cases"].size(); ++i) limits.cases.push_back(read_case(document, i, limits));
   }
   if (root.contains("sound")) limits.criteria = read_criteria(root["sound"]);
-  if (root.contains("scenes")) limits.scenes = read_scene_list(document, file.parent_path());
   return limits;
 }
 

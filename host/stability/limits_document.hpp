@@ -38,8 +38,7 @@ struct ExtremeCase {
 struct LimitsFile : trial::CampaignFile {
   std::optional<LimitsParameter> parameter;
   std::vector<ExtremeCase> cases;
-  std::vector<std::filesystem::path> scenes;  ///< whose margins are computed
-  long steps = 0;                             ///< of a trial; 0: all of the scene's
+  long steps = 0;  ///< of a trial; 0: all of the scene's
   HealthCriteria criteria;
 };
 

@@ -6,7 +6,6 @@
 #include "base/text.hpp"
 #include "files/csv_reader.hpp"
 #include "report/result_page.hpp"
-#include "scene_margins.hpp"
 #include "trial/campaign.hpp"
 
 namespace rouleau::stability {
@@ -121,7 +120,6 @@ Json limits_json(const LimitsState& state) {
                  {"parameter", limits.parameter ? parameter_json(*limits.parameter) : Json()},
                  {"edges", edges},
                  {"cases", cases},
-                 {"scenes", scene_margins(state)},
                  {"warnings", limits_warnings(state)}});
   return result;
 }
@@ -181,11 +179,6 @@ std::string limits_text(const Json& limits) {
     if (!extreme["failure"].is_null()) text << " (" << failure_text(extreme["failure"]) << ")";
     if (!extreme["as_expected"]) text << ", expected: " << extreme["expect"].get<std::string>();
     text << "\n";
-  }
-  for (const Json& scene : limits["scenes"]) {
-    text << "  margin of " << scene["scene"].get<std::string>() << ": ";
-    text << (scene["margin"].is_null() ? scene["why_not"].get<std::string>() : number(scene["margin"].get<double>(), 3))
-         << "\n";
   }
   for (const Json& warning : limits["warnings"]) text << "warning: " << warning.get<std::string>() << "\n";
   return text.str();

@@ -60,7 +60,7 @@ bool LimitsRun::run() {
 void LimitsRun::search(const trial::Point& point) {
   const LimitsParameter& parameter = *limits_.parameter;
   const Json scene = trial::scene_of(limits_.scene, limits_.axes, point);
-  CombinationResult result{point, {}, {}, {}};
+  CombinationResult result{point, {}, {}};
   campaign_.say(trial::name_of(limits_.axes, point) + ":");
   result.search = find_edges(parameter.range, [&](double value) -> std::optional<bool> {
     Json tried = scene;
@@ -72,7 +72,6 @@ void LimitsRun::search(const trial::Point& point) {
     campaign_.say("  " + parameter.name + ' ' + number(value) + (parameter.unit.empty() ? "" : ' ' + parameter.unit) +
                   ": " + words_of(run->judgement));
     result.trials.push_back({value, std::move(run->judgement)});
-    result.scene_file = run->directory.string() + ".scene.json";
     return healthy;
   });
   state_.combinations.push_back(std::move(result));

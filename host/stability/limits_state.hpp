@@ -19,8 +19,7 @@ struct LimitsTrial {
 struct CombinationResult {
   trial::Point point;
   EdgeSearch search;
-  std::vector<LimitsTrial> trials;   ///< in the order of the search
-  std::filesystem::path scene_file;  ///< of one of them
+  std::vector<LimitsTrial> trials;  ///< in the order of the search
 };
 
 struct CaseResult {

@@ -403,10 +403,9 @@ class The_page_of_limits(PageCase):
         self.assertEqual(page.run("[document.querySelectorAll('td.over').length, document.querySelectorAll('td.near').length]"), [1, 4])
         self.assertEqual(self.rows(page, "Edges")[-1][-1], page.run(f"format({LIMITS['edges'][-1]['out_of_order'][0]}, 3)"))
         self.assertIn("a factor of 1.1", self.text(page))
-        self.assertEqual([row[2] for row in self.rows(page, "Margins of the scenes")], ["41 ×", "1.2 ×", "–"])
 
     def test_of_cases_alone_has_no_map(self):
-        page = self.open(report("cases", dict(LIMITS, edges=[], axes=[], parameter=None, scenes=[])))
+        page = self.open(report("cases", dict(LIMITS, edges=[], axes=[], parameter=None)))
         self.assertEqual(page.run("document.querySelectorAll('.map').length"), 0)
         self.assertEqual(len(self.rows(page, "Extreme cases")), 4)
         self.assert_sound(page)
@@ -425,7 +424,7 @@ class The_page_of_limits(PageCase):
         result["parameter"].update({"scale": "linear", "from": -1, "to": 3, "unit": ""})
         result["edges"] = [{"labels": {}, "stable_up_to": 1, "unstable_from": 1.2, "direction": "above", "failure": None,
                             "trials": [{"value": v, "end": "completed" if v < 1.1 else "crashed", "reason": None, "step": None} for v in (-1, 1, 1.2, 3)]}]
-        result.update(axes=[], scenes=[])
+        result.update(axes=[])
         page = self.open(report("linear", result))
         a, b, c = page.run("[-1, 1, 3].map(v => map.axis.at(v))")
         self.assertAlmostEqual(b - a, c - b, places=6)

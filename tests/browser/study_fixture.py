@@ -159,8 +159,6 @@ def limits(title="Stiffness of the membrane"):
             {"name": "shear 1e5 /s", "expect": "right", "outcome": "mach at step 7: the flow is too fast", "verdict": "stopped with a reason", "as_expected": False,
              "failure": failure("mach", "The flow is too fast.", "Lower density_factor.", 7)},
             {"name": "depth 1000 times Es", "expect": "either", "outcome": "completed with an area drift of 0.4", "verdict": "WRONG", "as_expected": False, "failure": None}],
-        "scenes": [{"scene": "scenes/capsule.json", "value": 6e-6, "margin": 41.0, "why_not": None}, {"scene": "scenes/four-cells-shear.json", "value": 3e-4, "margin": 1.2, "why_not": None},
-                   {"scene": "scenes/channel.json", "value": 1e-5, "margin": None, "why_not": "its kernel is in no combination"}],
         "warnings": [],
     }
 

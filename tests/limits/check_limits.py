@@ -82,22 +82,6 @@ class Edges(Case):
         self.assertEqual(float(rows[0]["stable_up_to"]), explicit["stable_up_to"])
         self.assertEqual(rows[0]["reason"], failure["reason"])
 
-    def test_margins_of_scenes_are_told_in_lattice_units(self):
-        half = json.loads(json.dumps(SCENE))
-        half["numerics"]["density_factor"] = 500
-        space = json.loads(json.dumps(SCENE))  # an edge of two dimensions says nothing about it
-        space["domain"].update(size=["12.512 um"] * 3, nodes=[64] * 3)
-        scenes = {"same": SCENE, "half": half, "fluid": {**SCENE, "cells": [], "cell_types": {}}, "space": space}
-        for name, scene in scenes.items():
-            (self.path / f"{name}.json").write_text(json.dumps(scene))
-        self.run_limits(self.write(parameter=STIFFNESS, scenes=[f"{name}.json" for name in scenes]), "--quiet")
-        limits = self.found()
-        margins = {Path(scene["scene"]).stem: scene for scene in limits["scenes"]}
-        self.assertEqual(set(margins), {"same", "half"})
-        self.assertAlmostEqual(margins["same"]["margin"], limits["edges"][0]["stable_up_to"] / 6e-6, places=6)
-        # Stiffness in lattice units goes with the time step squared over the density: with density_factor.
-        self.assertAlmostEqual(margins["half"]["margin"] / margins["same"]["margin"], 2, places=6)
-
     def test_it_goes_on_where_it_was_ended_and_tries_nothing_twice(self):
         file = self.write(parameter={**STIFFNESS, "precision": 1.05}, steps=20000)
         process = subprocess.Popen(self.command(file), stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)

@@ -47,7 +47,6 @@ function showLimits(result) {
   const map = rows.length ? showMap(result, varied, unit) : null;
   showEdges(result, unit);
   showCases(result.cases ?? []);
-  showMargins(result.scenes ?? [], unit);
   showSoundness(result);
   showOrigin(result, result.limits_file, "Limits");
   return map;

@@ -36,11 +36,3 @@ function showCases(cases) {
     {title: "What to change", value: r => r.failure?.remedy ?? "", mark: () => "broad"}], cases, {stacked: true}),
     note("A case passes if it gives the right answer, or stops with a reason before it writes wrong results. Anything else is WRONG. A case that did not end as expected is marked too."));
 }
-function showMargins(scenes, unit) {
-  if (!scenes.length) return;
-  section("Margins of the scenes", table([{title: "Scene", value: r => element("code", {}, r.scene)}, {title: `Value${unit ? `, ${unit}` : ""}`, key: "value", number: true},
-    {title: "Margin", number: true, value: r => typeof r.margin === "number" ? `${format(r.margin, 3)} ×` : "–", sort: r => r.margin,
-     mark: r => typeof r.margin !== "number" ? "" : r.margin < 1 ? "over" : r.margin < 1.5 ? "near" : ""},
-    ...(scenes.some(r => r.why_not) ? [{title: "Why none", value: r => r.why_not ?? ""}] : [])], scenes, {sortable: true}),
-    note("Values are compared in lattice units, because scenes differ in resolution and density factor. The margin is the factor by which the value may change before it passes the edge; below 1 it has passed the edge."));
-}

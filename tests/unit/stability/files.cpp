@@ -40,10 +40,10 @@ TEST_CASE("limits.json fits its schema, with edges, without, and with cases", "[
   CHECK(validated()["complete"] == false);
   const Judgement stable{true, "completed", nullptr};
   CombinationResult found{
-      Point{{0}}, {{{StabilityEdge::Direction::above, 1e-4, 2e-4}}, {1e-6, 1e-2, 1e-4, 2e-4}, {1e-2}, true}, {}, {}};
+      Point{{0}}, {{{StabilityEdge::Direction::above, 1e-4, 2e-4}}, {1e-6, 1e-2, 1e-4, 2e-4}, {1e-2}, true}, {}};
   found.trials = {{1e-6, stable}, {1e-2, stable}, {1e-4, stable}, {2e-4, failed_at(7)}};
   CombinationResult none{
-      Point{{1}}, {{{StabilityEdge::Direction::above, {}, 1e-6}}, {1e-6}, {}, true}, {{1e-6, failed_at(3)}}, {}};
+      Point{{1}}, {{{StabilityEdge::Direction::above, {}, 1e-6}}, {1e-6}, {}, true}, {{1e-6, failed_at(3)}}};
   state.combinations = {found, none};
   state.cases = {{&extreme, failed_at(4), "stopped with a reason", "it stopped", true}};
   state.finished = "later";
