@@ -242,6 +242,46 @@ double cost_of_all(const scene::Scene& scene, const CoarserLattices& lattices, c
   return steps * (share(fine) + share(coarse) + changes.cost(tau) * share(changes.lattice(fine, coarse)));
 }
 
+/// The companions of a choice: on coarser lattices, and one for each change on the lattice that it is made on. `thinned`:
+/// with fewer outputs.
+void add_runs(const scene::Scene& scene, const CoarserLattices& lattices, const Choice& choice, bool moments,
+              bool thinned, Companions& chosen) {
+  const int fine = choice.fine, coarse = choice.coarse;
+  const double tau = choice.tau;
+  const Changes& changes = choice.changes;
+  const auto add_lattice = [&](Role role, int part) {
+    const LatticeSize size = lattices.nodes(part);
+    Json coarser = on_lattice(scene, size);
+    const bool same_tau = tau == scene.numerics.tau;
+    if (!same_tau) coarser["numerics"]["tau"] = tau;
+    if (thinned) coarser["output"]["cells"] = *thin_outputs(scene);
+    const bool longer_run = moments && go_on(coarser);
+    chosen.runs.push_back({role, std::move(coarser), in_words(size) + (same_tau ? "" : ", tau " + number(tau, 3)),
+                           longer_run ? name_beyond : ""});
+  };
+  add_lattice(Role::lattice, fine);
+  if (coarse > 0) add_lattice(Role::order, coarse);
+  int last = changes.lattice(fine, coarse) == fine ? 0 : 1;
+  Json companion = chosen.runs[static_cast<std::size_t>(last)].scene;
+  const std::string beyond = chosen.runs[static_cast<std::size_t>(last)].beyond;
+  const auto add_change = [&](Role role, const std::string& differs) {
+    chosen.runs.push_back({role, companion, differs, beyond, last});
+    last = static_cast<int>(chosen.runs.size()) - 1;
+  };
+  if (changes.start) {
+    for (std::size_t i = 0; i < scene.stages.size(); ++i) {
+      if (starts_at_rest(scene.stages[i], scene)) companion["stages"][i]["start"] = "developed";
+    }
+    add_change(Role::start, "the flow developed from the start");
+  }
+  if (changes.inertia) {
+    set_density(companion, chosen.density);
+    companion["numerics"]["tau"] = changes.tau;
+    add_change(Role::inertia, "density factor times " + number(chosen.density, 3) +
+                                  (changes.tau != tau ? ", tau " + number(changes.tau, 3) : ""));
+  }
+}
+
 }  // namespace
 
 const char* name_of(Role role) {
@@ -298,7 +338,6 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost, dou
   }
   const int fine = choice.fine, coarse = choice.coarse;
   const double tau = choice.tau;
-  const Changes& changes = choice.changes;
   const auto too_small = [&lattices](double radius) {
     return "on a lattice that costs a small part of this one a cell's radius would be " + number(radius, 2) +
            " spacings, fewer than " + number(lattices.least_radius());
@@ -313,7 +352,7 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost, dou
                       " times their distance at a small part of the cost; take numbers with a larger common divisor";
     return chosen;
   }
-  chosen.density = changes.density;
+  chosen.density = choice.changes.density;
   const auto as_by_spacing = [&](int part) {
     const double change =
         plan::growth_of_lattice_error(scene, tau) / plan::growth_of_lattice_error(scene, scene.numerics.tau);
@@ -325,40 +364,8 @@ Companions choose_companions(const scene::Scene& scene, const RunCost& cost, dou
     chosen.why_none = too_small(radius);
     return chosen;
   }
-  const auto add_lattice = [&](Role role, int part) {
-    const LatticeSize size = lattices.nodes(part);
-    Json coarser = on_lattice(scene, size);
-    const bool same_tau = tau == scene.numerics.tau;
-    if (!same_tau) coarser["numerics"]["tau"] = tau;
-    if (thinned) coarser["output"]["cells"] = *thin_outputs(scene);
-    const bool longer_run = cost.moments && go_on(coarser);
-    chosen.runs.push_back({role, std::move(coarser), in_words(size) + (same_tau ? "" : ", tau " + number(tau, 3)),
-                           longer_run ? name_beyond : ""});
-  };
-  add_lattice(Role::lattice, fine);
-  if (coarse > 0) {
-    chosen.coarsest = as_by_spacing(coarse);
-    add_lattice(Role::order, coarse);
-  }
-  int last = changes.lattice(fine, coarse) == fine ? 0 : 1;
-  Json companion = chosen.runs[static_cast<std::size_t>(last)].scene;
-  const std::string beyond = chosen.runs[static_cast<std::size_t>(last)].beyond;
-  const auto add_change = [&](Role role, const std::string& differs) {
-    chosen.runs.push_back({role, companion, differs, beyond, last});
-    last = static_cast<int>(chosen.runs.size()) - 1;
-  };
-  if (changes.start) {
-    for (std::size_t i = 0; i < scene.stages.size(); ++i) {
-      if (starts_at_rest(scene.stages[i], scene)) companion["stages"][i]["start"] = "developed";
-    }
-    add_change(Role::start, "the flow developed from the start");
-  }
-  if (changes.inertia) {
-    set_density(companion, chosen.density);
-    companion["numerics"]["tau"] = changes.tau;
-    add_change(Role::inertia, "density factor times " + number(chosen.density, 3) +
-                                  (changes.tau != tau ? ", tau " + number(changes.tau, 3) : ""));
-  }
+  add_runs(scene, lattices, choice, cost.moments, thinned, chosen);
+  if (coarse > 0) chosen.coarsest = as_by_spacing(coarse);
   return chosen;
 }
 

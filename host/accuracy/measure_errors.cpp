@@ -16,6 +16,7 @@
 #include "plan/plan_report.hpp"
 #include "refinement.hpp"
 #include "run/simulation.hpp"
+#include "scene/read_scene.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/random_cells.hpp"
 #include "trial/trial.hpp"

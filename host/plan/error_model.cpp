@@ -7,6 +7,7 @@
 
 #include "constants.hpp"
 #include "flow.hpp"
+#include "shape/extent.hpp"
 #include "shape/outline.hpp"
 
 namespace rouleau::plan {

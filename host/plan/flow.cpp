@@ -11,6 +11,7 @@
 #include "core/fluid/relaxation.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/lattice.hpp"
+#include "shape/extent.hpp"
 #include "shape/outline.hpp"
 
 namespace rouleau::plan {

@@ -9,6 +9,7 @@
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
 #include "numerics_problem.hpp"
+#include "scene/read_scene.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/outline.hpp"
 #include "shape/random_cells.hpp"

@@ -12,6 +12,8 @@
 #include "numerics_auto.hpp"
 #include "plan.hpp"
 #include "scene/named_files.hpp"
+#include "scene/read_scene.hpp"
+#include "shape/extent.hpp"
 #include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
 

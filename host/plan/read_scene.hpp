@@ -10,6 +10,7 @@
 
 #include "numerics_choice.hpp"
 #include "plugin/catalog.hpp"
+#include "scene/read_scene.hpp"
 #include "scene/scene.hpp"
 #include "shape/packing.hpp"
 

@@ -170,6 +170,47 @@ Choice choose(const std::vector<double>& aggregate_count, std::size_t nodes, std
   return choice;
 }
 
+/// Summary and scene as the run has written them; null where it has not.
+Json as_written(const std::filesystem::path& directory) {
+  if (!has_run(directory))
+    throw Error(Cause::bad_input, Place{directory.string()},
+                "is no run's directory: it has neither summary.json nor series.csv");
+  const bool ended = std::filesystem::exists(directory / "summary.json");
+  for (const char* name : {"summary.json", "scene.json"}) files::require_own(directory / name);
+  Json data;
+  data["summary"] = ended ? json::Document::read(directory / "summary.json").root() : Json(nullptr);
+  const bool has_scene = std::filesystem::exists(directory / "scene.json");
+  data["scene"] = has_scene ? Json(files::read_text(directory / "scene.json")) : Json(nullptr);
+  return data;
+}
+
+/// What has changed since the run wrote it, of the files that a page is made of.
+Json damage_of(const std::filesystem::path& directory, const Json& summary) {
+  Json damage = Json::array();
+  if (summary.contains("files")) {
+    const auto shown_here = [](const std::string& name) { return name.ends_with(".csv") || name == "scene.json"; };
+    for (const std::string& difference : files::verify(directory, shown_here).differences) {
+      damage.push_back((directory / "").string() + difference);
+    }
+  }
+  return damage;
+}
+
+/// When each output was, in time, strain, steps and stages.
+void add_instants(const files::StoredTable& series, const std::vector<std::size_t>& selection, Json& data) {
+  constexpr int axis_precision = 9;
+  for (const char* name : {"time_s", "strain"}) data[name] = picked(series.numbers(name), selection, 1, axis_precision);
+  const auto steps = series.numbers("step");
+  const auto stages = series.texts("stage_name");
+  data["step"] = data["stage"] = Json::array();
+  for (const std::size_t i : selection) {
+    data["step"].push_back(std::llround(steps[i]));
+    data["stage"].push_back(stages[i]);
+  }
+  data["shear_rate"] =
+      series.has("shear_rate_1_per_s") ? picked(series.numbers("shear_rate_1_per_s"), selection) : Json();
+}
+
 }  // namespace
 
 std::vector<std::size_t> shown_outputs(const std::vector<double>& aggregate_count, std::size_t most) {
@@ -194,15 +235,8 @@ bool has_run(const std::filesystem::path& directory) {
 }
 
 Json report_data(const std::filesystem::path& directory) {
-  if (!has_run(directory))
-    throw Error(Cause::bad_input, Place{directory.string()},
-                "is no run's directory: it has neither summary.json nor series.csv");
-  const bool ended = std::filesystem::exists(directory / "summary.json");
-  for (const char* name : {"summary.json", "scene.json"}) files::require_own(directory / name);
-  Json data;
-  data["summary"] = ended ? json::Document::read(directory / "summary.json").root() : Json(nullptr);
-  const bool has_scene = std::filesystem::exists(directory / "scene.json");
-  data["scene"] = has_scene ? Json(files::read_text(directory / "scene.json")) : Json(nullptr);
+  Json data = as_written(directory);
+  const bool ended = !data["summary"].is_null();
 
   const files::StoredTable series(directory / "series.csv");
   std::error_code missing;
@@ -211,13 +245,7 @@ Json report_data(const std::filesystem::path& directory) {
   if (missing || bytes <= most_bytes) cells.emplace(directory / "cells.csv");
   const std::size_t count = cells ? cells->count_of("cell") : 0;
   std::size_t outputs = series.rows();
-  Json damage = Json::array();
-  if (ended && data["summary"].contains("files")) {
-    const auto shown_here = [](const std::string& name) { return name.ends_with(".csv") || name == "scene.json"; };
-    for (const std::string& difference : files::verify(directory, shown_here).differences) {
-      damage.push_back((directory / "").string() + difference);
-    }
-  }
+  Json damage = damage_of(directory, data["summary"]);
   // A run that goes on, or was killed, may lack the last rows of a file; one that has ended may not.
   const auto take = [&](const char* file, std::size_t has) {
     if (ended && has < series.rows()) {
@@ -265,17 +293,7 @@ Json report_data(const std::filesystem::path& directory) {
   const auto [selection, stride] = choose(aggregate_count, nodes, count, with_fields);
 
   data["shown"] = {{"outputs", selection.size()}, {"of", outputs}, {"node_stride", stride}};
-  constexpr int axis_precision = 9;
-  for (const char* name : {"time_s", "strain"}) data[name] = picked(series.numbers(name), selection, 1, axis_precision);
-  const auto steps = series.numbers("step");
-  const auto stages = series.texts("stage_name");
-  data["step"] = data["stage"] = Json::array();
-  for (const std::size_t i : selection) {
-    data["step"].push_back(std::llround(steps[i]));
-    data["stage"].push_back(stages[i]);
-  }
-  data["shear_rate"] =
-      series.has("shear_rate_1_per_s") ? picked(series.numbers("shear_rate_1_per_s"), selection) : Json();
+  add_instants(series, selection, data);
   data["charts"] = charts();
   data["series"] = series_data(series, selection);
   data["cells"] = count > 0 && outputs > 0 ? cell_data(*cells, count, outputs, selection) : Json(nullptr);

@@ -1,7 +1,9 @@
 #include "extent.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "outline.hpp"
 #include "surface.hpp"
@@ -42,6 +44,35 @@ double node_spacing(const scene::CellType& type) {
   for (const core::Mesh::Edge& edge : surface.mesh.edges())
     sum += (surface.nodes()[edge.b] - surface.nodes()[edge.a]).norm();
   return sum / surface.mesh.edge_count();
+}
+
+namespace {
+
+/// Half of the longest side of the box around a surface.
+double half_extent(const TriangleSurface& surface) {
+  Eigen::AlignedBox3d box;
+  for (const core::Vec<3>& node : surface.nodes) box.extend(node);
+  return box.sizes().maxCoeff() / 2;
+}
+
+}  // namespace
+
+double shape_radius(const scene::Shape& shape) {
+  if (const auto* biconcave = std::get_if<scene::Biconcave>(&shape)) return biconcave->radius;
+  if (const auto* circle = std::get_if<scene::Circle>(&shape)) return circle->radius;
+  if (const auto* sphere = std::get_if<scene::Sphere>(&shape)) return sphere->radius;
+  if (const auto* ellipsoid = std::get_if<scene::Ellipsoid>(&shape)) return ellipsoid->semi_axes.most();
+  if (const auto* mesh = std::get_if<scene::MeshFile>(&shape)) return half_extent(mesh_surface(*mesh));
+  return std::get<scene::Ellipse>(shape).semi_axes.most();
+}
+
+double smallest_radius(const scene::Scene& scene) {
+  double least = 0;
+  for (const scene::CellPlacement& cell : scene.cells) {
+    const double radius = shape_radius(scene.cell_types[cell.type].shape);
+    least = least == 0 ? radius : std::min(least, radius);
+  }
+  return least;
 }
 
 }  // namespace rouleau::shape

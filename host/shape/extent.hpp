@@ -16,4 +16,9 @@ double node_count(const scene::CellType& type);
 /// Mean length of its segments, or of its edges, m.
 double node_spacing(const scene::CellType& type);
 
+/// Half of the longest axis, m: what Reynolds, capillary and adhesion numbers are made with.
+double shape_radius(const scene::Shape& shape);
+/// That of the smallest cell of a scene; 0 without cells.
+double smallest_radius(const scene::Scene& scene);
+
 }  // namespace rouleau::shape

@@ -73,7 +73,9 @@ TriangleSurface read_mesh(const std::filesystem::path& file) {
   const Read read = format_of(text, file);
   Words words(std::move(text), file.string());
   TriangleSurface surface = read(words);
-  const auto refuse = [&](const std::string& problem) { throw Error(Cause::bad_input, Place{file.string()}, problem); };
+  const auto refuse = [&](const std::string& problem) {
+    throw Error(Cause::bad_input, rouleau::Place{file.string()}, problem);
+  };
   Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < surface.nodes.size(); ++i) {
     if (!surface.nodes[i].allFinite())
@@ -94,7 +96,7 @@ TriangleSurface read_mesh(const std::filesystem::path& file) {
   } catch (const std::invalid_argument& error) {
     fault = error.what();
   }
-  throw Error(Cause::bad_input, Place{file.string()}, fault);
+  throw Error(Cause::bad_input, rouleau::Place{file.string()}, fault);
 }
 
 }  // namespace rouleau::shape

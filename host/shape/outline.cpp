@@ -117,35 +117,6 @@ Outline make_outline(const scene::Shape& shape, int segments) {
   return outline;
 }
 
-namespace {
-
-/// Half of the longest side of the box around a surface.
-double half_extent(const TriangleSurface& surface) {
-  Eigen::AlignedBox3d box;
-  for (const core::Vec<3>& node : surface.nodes) box.extend(node);
-  return box.sizes().maxCoeff() / 2;
-}
-
-}  // namespace
-
-double shape_radius(const scene::Shape& shape) {
-  if (const auto* biconcave = std::get_if<scene::Biconcave>(&shape)) return biconcave->radius;
-  if (const auto* circle = std::get_if<scene::Circle>(&shape)) return circle->radius;
-  if (const auto* sphere = std::get_if<scene::Sphere>(&shape)) return sphere->radius;
-  if (const auto* ellipsoid = std::get_if<scene::Ellipsoid>(&shape)) return ellipsoid->semi_axes.most();
-  if (const auto* mesh = std::get_if<scene::MeshFile>(&shape)) return half_extent(mesh_surface(*mesh));
-  return std::get<scene::Ellipse>(shape).semi_axes.most();
-}
-
-double smallest_radius(const scene::Scene& scene) {
-  double least = 0;
-  for (const scene::CellPlacement& cell : scene.cells) {
-    const double radius = shape_radius(scene.cell_types[cell.type].shape);
-    least = least == 0 ? radius : std::min(least, radius);
-  }
-  return least;
-}
-
 double shape_perimeter(const scene::Shape& shape) {
   if (const auto* biconcave = std::get_if<scene::Biconcave>(&shape)) return 4.9285 * biconcave->radius;
   if (const auto* circle = std::get_if<scene::Circle>(&shape)) return full_turn * circle->radius;

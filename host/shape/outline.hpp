@@ -21,10 +21,6 @@ Outline make_outline(const scene::Shape& shape, int segments);
 /// Place on the biconcave outline of radius 1 at an angle, 0 on the positive x axis, pi/2 on its axis of symmetry.
 Eigen::Vector2d biconcave_place(double angle);
 
-/// Half of the longest axis, m: what Reynolds, capillary and adhesion numbers are made with.
-double shape_radius(const scene::Shape& shape);
-/// That of the smallest cell of a scene; 0 without cells.
-double smallest_radius(const scene::Scene& scene);
 /// Length of the membrane as placed, m, of a shape of two dimensions: exact for circles, to 1e-5 for others
 /// (Ramanujan's formula for ellipses).
 double shape_perimeter(const scene::Shape& shape);

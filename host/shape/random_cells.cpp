@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/text.hpp"
+#include "extent.hpp"
 #include "outline.hpp"
 #include "scene/scene_reader.hpp"
 

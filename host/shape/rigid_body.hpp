@@ -17,6 +17,10 @@ namespace rouleau::shape {
 template <int D>
 using Place = std::array<double, D>;
 
+inline Place<3> minus(const Place<3>& a, const Place<3>& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline double dot(const Place<3>& a, const Place<3>& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline double norm(const Place<3>& a) { return std::sqrt(dot(a, a)); }
+
 struct Pair {
   double x, y;
 };

@@ -13,13 +13,9 @@ namespace rouleau::shape {
 namespace {
 
 constexpr int map_steps = 40;                ///< of the map of distances, along the radius
-constexpr int items_of_ball = 4;             ///< of a tree's smallest balls
 constexpr std::size_t most_samples = 12000;  ///< up to which triangles are divided
 constexpr double least_from_pole = 0x1p-20;
 
-Place<3> minus(const Place<3>& a, const Place<3>& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double dot(const Place<3>& a, const Place<3>& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-double norm(const Place<3>& a) { return std::sqrt(dot(a, a)); }
 /// a + s b
 Place<3> along(const Place<3>& a, double s, const Place<3>& b) {
   return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]};
@@ -59,41 +55,6 @@ RigidSurface::Orientation orientation(const Place<3>& axis, std::uint32_t angle)
 }
 
 }  // namespace
-
-BallTree::BallTree(const std::vector<Place<3>>& centers, const std::vector<double>& radii) : order_(centers.size()) {
-  std::iota(order_.begin(), order_.end(), 0);
-  add(centers, radii, 0, static_cast<int>(order_.size()));
-}
-
-void BallTree::add(const std::vector<Place<3>>& centers, const std::vector<double>& radii, int first, int end) {
-  Place<3> least = centers[order_[first]], most = least;
-  for (int i = first; i < end; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      least[k] = std::min(least[k], centers[order_[i]][k]);
-      most[k] = std::max(most[k], centers[order_[i]][k]);
-    }
-  }
-  Ball ball{{}, 0, first, end, 0};
-  for (int k = 0; k < 3; ++k) ball.center[k] = 0.5 * (least[k] + most[k]);
-  for (int i = first; i < end; ++i) {
-    const int item = order_[i];
-    ball.radius = std::max(ball.radius, norm(minus(centers[item], ball.center)) + radii[item]);
-  }
-  const bool whole = end - first <= items_of_ball;
-  if (!whole) ball.end = first;
-  const std::size_t place = balls_.size();
-  balls_.push_back(ball);
-  if (!whole) {
-    const Place<3> width = minus(most, least);
-    const auto axis = std::max_element(width.begin(), width.end()) - width.begin();
-    std::sort(order_.begin() + first, order_.begin() + end,
-              [&](int a, int b) { return std::pair(centers[a][axis], a) < std::pair(centers[b][axis], b); });
-    const int middle = first + (end - first) / 2;
-    add(centers, radii, first, middle);
-    add(centers, radii, middle, end);
-  }
-  balls_[place].next = balls_.size();
-}
 
 RigidSurface::Orientation RigidSurface::drawn(RandomNumbers& numbers) {
   for (;;) {  // Marsaglia, Annals of Mathematical Statistics 43, 645 (1972)

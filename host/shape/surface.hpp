@@ -27,7 +27,4 @@ TriangleSurface make_surface(const scene::CellType& type);
 /// Turns a cell about z, or so that its y axis becomes the axis wanted, and about that.
 Eigen::Matrix3d rotation_of(const scene::CellPlacement& cell);
 
-/// The surface at rest; `prestretch`: lengths as given over those at rest.
-core::RestSurface rest_surface(const TriangleSurface& surface, double prestretch = 1);
-
 }  // namespace rouleau::shape

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "core/domain/vec.hpp"
+#include "core/surface/surfaces.hpp"
 
 namespace rouleau::shape {
 
@@ -13,5 +13,8 @@ struct TriangleSurface {
   std::vector<core::Vec<3>> nodes;
   std::vector<std::array<int, 3>> triangles;
 };
+
+/// The surface at rest; `prestretch`: lengths as given over those at rest.
+core::RestSurface rest_surface(const TriangleSurface& surface, double prestretch = 1);
 
 }  // namespace rouleau::shape

@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "json/schema.hpp"
 #include "plan/read_scene.hpp"
+#include "scene/read_scene.hpp"
 #include "units/units.hpp"
 
 namespace rouleau::trial {

@@ -1,5 +1,6 @@
 // Scenes: from the text to the printed plan.
 #include "plan_scene.hpp"
+#include "scene/read_scene.hpp"
 
 using namespace rouleau;
 

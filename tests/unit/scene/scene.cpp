@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "json/document.hpp"
+#include "scene/read_scene.hpp"
 #include "scene/scene.hpp"
 #include "scratch_folder.hpp"
 

@@ -7,6 +7,7 @@
 #include "base/faults.hpp"
 #include "json/schema.hpp"
 #include "json/schema_words.hpp"
+#include "scene/read_scene.hpp"
 #include "scene/scene.hpp"
 
 using namespace rouleau;
