@@ -3,6 +3,7 @@
 #include <array>
 
 #include "base/text.hpp"
+#include "shape/extent.hpp"
 #include "shape/outline.hpp"
 #include "units/lattice_units.hpp"
 

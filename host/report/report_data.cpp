@@ -211,6 +211,11 @@ void add_instants(const files::StoredTable& series, const std::vector<std::size_
       series.has("shear_rate_1_per_s") ? picked(series.numbers("shear_rate_1_per_s"), selection) : Json();
 }
 
+std::string words_without_cells(std::uintmax_t bytes) {
+  return "No animation, no charts of cells: cells.csv has " + std::to_string(bytes / 1'000'000) +
+         " MB, and a page is made of up to " + std::to_string(most_bytes / 1'000'000) + ". The files have all of it.";
+}
+
 }  // namespace
 
 std::vector<std::size_t> shown_outputs(const std::vector<double>& aggregate_count, std::size_t most) {
@@ -264,10 +269,7 @@ Json report_data(const std::filesystem::path& directory) {
     note = std::string("No animation: ") + error.what();
     if (ended) damage.push_back(error.what());
   };
-  if (!cells) {
-    note = "No animation, no charts of cells: cells.csv has " + std::to_string(bytes / 1'000'000) +
-           " MB, and a page is made of up to " + std::to_string(most_bytes / 1'000'000) + ". The files have all of it.";
-  }
+  if (!cells) note = words_without_cells(bytes);
   std::size_t nodes = 0;
   bool drawn = cells.has_value();
   Selection with_fields;

@@ -27,14 +27,11 @@ MOST_COLUMNS = 120
 MOST_LINES_OF_FUNCTION = 80
 MOST_LINES_OF_UNIT = 450
 # What is still beyond: these numbers may fall, and leave the list; none may rise.
-UNITS_IN_CIRCLES = {"scene": 2}
-LONG_LINES = 374
-LONG_FUNCTIONS = {"accuracy/companions": 103, "core/fluid/energetics": 130, "observe/observables": 183,
-                  "report/report_data": 105}
-LONG_UNITS = {"core/fluid/fluid": 988,
-              "core/solver/cell_exchange": 524, "hdf5/hdf5_file": 588, "observe/observables": 596,
-              "run/checkpoint": 454, "run/simulation": 669,
-              "scene/scene": 706, "shape/rigid_surface": 451}
+UNITS_IN_CIRCLES = {}
+LONG_LINES = 327
+LONG_FUNCTIONS = {"core/fluid/energetics": 130, "observe/observables": 183}
+LONG_UNITS = {"core/fluid/fluid": 904, "core/solver/cell_exchange": 500, "hdf5/hdf5_file": 588,
+              "observe/observables": 596}
 # Outside command/ nobody speaks of the command line, but for these files.
 SPEAK = {"trial/trial.cpp": "gives a child its options", "json/set_option.cpp": "reads the text of --set",
          "conform/program.cpp": "is a program", "conform/check_program.cpp": "is a program"}

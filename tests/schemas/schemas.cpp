@@ -22,6 +22,7 @@
 #include "json/schema.hpp"
 #include "plugin/collection.hpp"
 #include "plugin/lock.hpp"
+#include "plugin/manifest_reader.hpp"
 #include "scene/read_scene.hpp"
 #include "scene/scene.hpp"
 #include "stability/limits_document.hpp"
