@@ -70,7 +70,7 @@ TEST_CASE("a library that was built anew is loaded beside the old one, for a man
     const rouleau_model& anew = open_model(after);
     CHECK(&anew != &old);
     CHECK(&open_model(after) == &anew);
-    CHECK(library_sha256(after) == sha256(library));
+    CHECK(library_sha256(after) == rouleau::sha256(library));
     CHECK(&open_model(before) == &old);  // whoever has begun with it goes on with it
     CHECK(library_sha256(before) == old_hash);
   }
@@ -264,10 +264,10 @@ TEST_CASE("a model that cannot be made is refused with the plugin's own words") 
 TEST_CASE("the SHA-256 of a file is the one of the standard") {
   const PluginFolder folder;
   // FIPS 180-2, appendix B.1, and the digest of no bytes at all.
-  CHECK(sha256(folder.write("abc", std::string("abc"))) ==
+  CHECK(rouleau::sha256(folder.write("abc", std::string("abc"))) ==
         "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  CHECK(sha256(folder.write("empty", std::string())) ==
+  CHECK(rouleau::sha256(folder.write("empty", std::string())) ==
         "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  CHECK(thrown_by([&] { sha256(folder.path() / "absent"); }).cause() == Cause::input_output);
-  CHECK(thrown_by([&] { sha256(folder.path()); }).cause() == Cause::input_output);
+  CHECK(thrown_by([&] { rouleau::sha256(folder.path() / "absent"); }).cause() == Cause::input_output);
+  CHECK(thrown_by([&] { rouleau::sha256(folder.path()); }).cause() == Cause::input_output);
 }

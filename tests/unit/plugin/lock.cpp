@@ -59,10 +59,10 @@ TEST_CASE("a lock holds id, kind, version and the hashes of library and manifest
   const LockedPlugin& plugin = *lock.find("good");
   CHECK(plugin.kind == "interaction");
   CHECK(plugin.version == "1.0.0");
-  CHECK(plugin.library_sha256 == sha256(folder.path() / "libgood.so"));
-  CHECK(plugin.manifest_sha256 == sha256(folder.path() / "good.json"));
+  CHECK(plugin.library_sha256 == rouleau::sha256(folder.path() / "libgood.so"));
+  CHECK(plugin.manifest_sha256 == rouleau::sha256(folder.path() / "good.json"));
   CHECK(lock.find("other") == nullptr);
-  CHECK(lock.sha256 == sha256(folder.lock_file()));
+  CHECK(lock.sha256 == rouleau::sha256(folder.lock_file()));
 }
 
 TEST_CASE("the text of a lock does not depend on the order in which a scene names its models") {
@@ -78,14 +78,14 @@ TEST_CASE("what is locked is found and opened") {
 
 TEST_CASE("another library than the locked one is not opened, and both hashes are named") {
   const LockedFolder folder;
-  const std::string before = sha256(folder.path() / "libgood.so");
+  const std::string before = rouleau::sha256(folder.path() / "libgood.so");
   std::ofstream(folder.path() / "libgood.so", std::ios::app) << "x";  // ELF files may have anything at their end
   const Catalog catalog = folder.locked_catalog();
   const Manifest& manifest = catalog.find(interaction, "good", somewhere);  // its manifest is the locked one
   const Error error = thrown_by([&] { (void)open_model(manifest); });
   CHECK(error.cause() == Cause::plugin_refused);
   CHECK_THAT(error.what(), Contains("expected SHA-256 " + before) &&
-                               Contains("found SHA-256 " + sha256(folder.path() / "libgood.so")) &&
+                               Contains("found SHA-256 " + rouleau::sha256(folder.path() / "libgood.so")) &&
                                Contains(folder.lock_file().string()) && EndsWith("\n  lock it again"));
   // Without the lock the changed library is a good one.
   const Catalog unlocked({folder.path()});
