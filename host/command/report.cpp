@@ -1,5 +1,5 @@
-// rouleau report DIR: the page about a run, a study or limits, or about two runs side by side, made again from the files
-// there.
+// rouleau report DIR: the page about a run, a study or limits, or about two runs side by side, made again from the
+// files there.
 #include "report/report.hpp"
 
 #include <iostream>

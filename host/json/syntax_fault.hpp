@@ -16,9 +16,9 @@ struct TextFault : std::runtime_error {
   std::string pointer;  ///< of the object or array it lies in, where that is known
 };
 
-/// The fault as an exception, to be thrown by the caller. `words`: what() of nlohmann-json's exception; `consumed`: bytes
-/// that it had read, `token` of them of the last token; `opened`: offset of the innermost open '{' or '[', the text's size
-/// when none is; `pointer`: of that one.
+/// The fault as an exception, to be thrown by the caller. `words`: what() of nlohmann-json's exception; `consumed`:
+/// bytes that it had read, `token` of them of the last token; `opened`: offset of the innermost open '{' or '[', the
+/// text's size when none is; `pointer`: of that one.
 TextFault syntax_fault(std::string_view text, const std::string& words, std::size_t consumed, std::size_t token,
                        std::size_t opened, const std::string& pointer);
 
