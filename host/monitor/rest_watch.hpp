@@ -57,17 +57,13 @@ class RestWatch {
   static void for_places(const core::CellNodes& cells, const core::GhostCells<D>* ghosts, Function function) {
     const auto add = [&](int cell, std::vector<double>& values) {
       for (int i = cells.cells[cell].first; i < cells.cells[cell].end(); ++i) {
-        values.push_back(cells.position[0][i]);
-        values.push_back(cells.position[1][i]);
-        if (D == 3) values.push_back(cells.position[2][i]);
+        for (int k = 0; k < D; ++k) values.push_back(cells.position[k][i]);
       }
     };
     core::give_in_order<double>(ghosts, cells, add, [&](Range run, const std::vector<double>& values) {
       core::CellNodes some;
       for (std::size_t i = 0; i < values.size(); i += D) {
-        some.position[0].push_back(values[i]);
-        some.position[1].push_back(values[i + 1]);
-        if (D == 3) some.position[2].push_back(values[i + 2]);
+        for (int k = 0; k < D; ++k) some.position[k].push_back(values[i + k]);
       }
       function(Range{cells.cells[run.begin].first, cells.cells[run.end - 1].end()}, some);
     });

@@ -20,18 +20,24 @@ class StoredRows {
 
   [[nodiscard]] const core::Domain<D>& domain() const { return domain_; }
   [[nodiscard]] int along(int axis) const { return storage_.count(axis, domain_.size[axis]); }
-  [[nodiscard]] int count() const { return along(1) * (D == 3 ? along(D - 1) : 1); }
+  [[nodiscard]] int count() const {
+    int all = 1;
+    for (int axis = 1; axis < D; ++axis) all *= along(axis);
+    return all;
+  }
   /// The lattice's node along x of a stored one.
   [[nodiscard]] int node(int column) const { return storage_.first[0] + column * storage_.stride; }
   [[nodiscard]] Row row(int stored) const {
-    Row row{storage_.first[1] + stored % along(1) * storage_.stride};
-    if constexpr (D == 3) row[1] = storage_.first[2] + stored / along(1) * storage_.stride;
+    Row row{};
+    for (int axis = 1; axis < D; stored /= along(axis++))
+      row[axis - 1] = storage_.first[axis] + stored % along(axis) * storage_.stride;
     return row;
   }
   /// The number of a row in the lattice.
   [[nodiscard]] int number(const Row& row) const {
-    if constexpr (D == 2) return row[0];
-    if constexpr (D == 3) return row[1] * domain_.size[1] + row[0];
+    int number = 0;
+    for (int axis = D - 1; axis > 0; --axis) number = number * domain_.size[axis] + row[axis - 1];
+    return number;
   }
   /// The row a step further along an axis; -1: it lies beyond a wall.
   [[nodiscard]] int beside(Row row, int axis, int step) const {

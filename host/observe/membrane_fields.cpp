@@ -51,9 +51,7 @@ MembraneSnapshot observe_membranes(core::AnySolver<D>& solver, const units::Latt
   const double spacing = units.length, tension = units.to_si(1, units::dimension::tension);
   field("points", "m", D, [&cells, spacing](int cell, std::vector<double>& values) {
     for (int i = cells.cells[cell].first; i < cells.cells[cell].end(); ++i) {
-      values.push_back(units::coordinate(cells.position[0][i], spacing));
-      values.push_back(units::coordinate(cells.position[1][i], spacing));
-      if (in_space) values.push_back(units::coordinate(cells.position[2][i], spacing));
+      for (int k = 0; k < D; ++k) values.push_back(units::coordinate(cells.position[k][i], spacing));
     }
   });
   field("tension", "N/m", 1, [&cells, tasks, tension](int cell, std::vector<double>& values) {

@@ -32,6 +32,12 @@ LONG_LINES = 327
 LONG_FUNCTIONS = {"core/fluid/energetics": 130, "observe/observables": 183}
 LONG_UNITS = {"core/fluid/fluid": 904, "core/solver/cell_exchange": 500, "hdf5/hdf5_file": 588,
               "observe/observables": 596}
+# Lines above core that ask whether there are two dimensions or three. What holds for x holds for y and z: loops over the axes of a
+# scene::Vector, words from scene/dimension_words.hpp, templates in D.
+BRANCHES_ON_DIMENSION = 114
+ASKS = re.compile(r"\bif\b|\?|[=!]=|&&|\|\||!")
+DIMENSION = re.compile(r"\b(D|dimensions?_?(\(\))?)\s*[=!<>]=?\s*[23D]|\b(is_|of_)?(in_)?space_?(\(\))?\s*(\?|\)|&&|\|\||;|,)|\bin_space\b"
+                       r"|\.z\.empty\(\)")
 # Outside command/ nobody speaks of the command line, but for these files.
 SPEAK = {"trial/trial.cpp": "gives a child its options", "json/set_option.cpp": "reads the text of --set",
          "conform/program.cpp": "is a program", "conform/check_program.cpp": "is a program"}
@@ -222,6 +228,12 @@ class What_is_read_at_once_stays_small(unittest.TestCase):
     def test_functions_are_measured(self):
         text = "namespace a {\nstruct B {\n  int c() {\n    return 1;\n  }\n};\nvoid d(int e,\n       int f) {\n  g();\n}\n}\n"
         self.assertEqual(sorted(functions(text)), [("int c() {", 3), ("void d(int e,", 4)])
+
+    def test_few_lines_above_core_ask_for_the_dimension(self):
+        found = [f"{place(path)}: {line}" for path in sources() if top(path) != "core" and path.is_relative_to(HOST)
+                 for line in re.sub(
+                     r'"(\\.|[^"\\])*"|//.*', "", path.read_text()).splitlines() if ASKS.search(line) and DIMENSION.search(line)]
+        self.assertLessEqual(len(found), BRANCHES_ON_DIMENSION, found)
 
     def test_no_folder_is_crowded(self):
         for folder in {p.parent for p in sources()}:
