@@ -149,8 +149,10 @@ void compare_clamped(Worst& worst, const Subject& outline, const Subject& surfac
     if (!is_clamped(outline, trial)) continue;
     Values segments = outline.random_inputs(trial.instance, count, random), triangles;
     if (!segments.contains("stretch")) return;
-    for (const char* name : {"invariant_1", "invariant_2"}) {
-      for (const double l : segments.at("stretch")) triangles[name].push_back((l - 1) * (l + 1));
+    for (double& l : segments["stretch"]) {
+      const double invariant = (l - 1) * (l + 1);
+      for (const char* name : {"invariant_1", "invariant_2"}) triangles[name].push_back(invariant);
+      if (l < 0.7) l = std::sqrt(1 + invariant);  // that of the rounded number: near -1 its last digit is many of l^2
     }
     plugin::ModelSetting setting = trial.setting;
     setting.dimension = 3;
