@@ -42,7 +42,10 @@ void cover(const Surfaces& surfaces, int cell, CellFraction<3>& fraction) {
     for (int i = 0; i < fraction.size[0]; ++i) {
       if (std::abs(row[i]) < 1e-12) row[i] = 0;  // what enters and leaves cancels up to rounding
     }
-    fraction.begin[r] = 0, fraction.end[r] = fraction.size[0];
+    int& begin = fraction.begin[r] = 0;
+    int& end = fraction.end[r] = fraction.size[0];
+    while (begin < end && row[begin] == 0) ++begin;
+    while (end > begin && row[end - 1] == 0) --end;
   }
 }
 
