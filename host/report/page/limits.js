@@ -3,7 +3,7 @@ const count = (number, one, many = `${one}s`) => `${number} ${number === 1 ? one
 
 /// "stable up to 235 1/s, fails at 251 1/s (sound waves)".
 function edgeSentence(row, unit) {
-  const value = v => `${format(v, 3)} ${unit}`.trim(), {above, below} = row, how = edge => edge.failure ? ` (${failureText(edge.failure)})` : "", text = edgeText(row, unit);
+  const value = v => `${format(v, 3)} ${unit}`.trim(), {above, below} = row, how = edge => edge.failure ? ` (${reasonWords(edge.failure.reason ?? "")})` : "", text = edgeText(row, unit);
   if (text === "not known yet") return "nothing is known yet";
   const nowhere = [above, below].find(edge => edge && edge.stable_up_to === null);
   if (nowhere) return `fails everywhere that was tried${how(nowhere)}`;
