@@ -181,9 +181,6 @@ class BadFiles(Case):
     def test_time_limit(self):
         self.refused(["/time_limit"], cases=[{"name": "a"}], time_limit="2 um")
 
-    def test_scenes_that_are_not_there(self):
-        self.refused(["/scenes/0", "there is no"], parameter=STIFFNESS, scenes=["nowhere"])
-
     def test_a_directory_of_something_else_is_left_alone(self):
         self.out.mkdir()
         (self.out / "precious.txt").write_text("precious")
