@@ -48,7 +48,7 @@ TEST_CASE("a capsule lowers the flow rate of a channel by what the reciprocal th
   // the power of G in u' is that of the F_i in u0, so that G L (Q - Q0) = sum F_i . u0(X_i).
   SolverBench bench(scenes + "/capsule.json", driven("8 s"));
   bench.start();
-  const scene::StageSetting& stage = bench.plan.stages[0];
+  const rouleau::scene::StageSetting& stage = bench.plan.stages[0];
   const double viscosity = (stage.tau - 0.5) / 3, height = 64, length = 64;
   const auto alone = [&](double y) { return stage.body_force.x() / (2 * viscosity) * (y + 0.5) * (height - 0.5 - y); };
   Fluid<double>& fluid = bench.solver->fluid();
