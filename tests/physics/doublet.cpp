@@ -18,14 +18,14 @@ using namespace rouleau::test;
 namespace {
 
 /// The Morse potential: where it is least, over what distance it falls off, and where it ends.
-struct Well {
+struct MorseWell {
   double distance, range, cutoff;
 };
 
 class Doublet {
  public:
   /// Two cells of a shape, side by side along y and bent into an S by a share of their radius.
-  Doublet(const shape::TriangleSurface& shape, MembraneLaws laws, Well well, double bent)
+  Doublet(const shape::TriangleSurface& shape, MembraneLaws laws, MorseWell well, double bent)
       : well_(well), cells_(side_by_side(shape, well, bent)), membranes_(cells_, {std::move(laws)}) {}
 
   /// Goes downhill, `depth` being the energy per area of the contact, by steps that move no node farther than `longest` cells'
@@ -83,7 +83,7 @@ class Doublet {
  private:
   static constexpr int box = 100;
 
-  static Surfaces side_by_side(const shape::TriangleSurface& shape, Well well, double bent) {
+  static Surfaces side_by_side(const shape::TriangleSurface& shape, MorseWell well, double bent) {
     Surfaces cells;
     cells.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape)));
     const RestSurface& rest = *cells.types[0];
@@ -106,7 +106,7 @@ class Doublet {
     return membranes_.energy(cells_) + contacts_->energy(cells_);
   }
 
-  Well well_;
+  MorseWell well_;
   Surfaces cells_;
   core::SurfaceForces membranes_;
   std::unique_ptr<core::Interactions<3>> contacts_;
@@ -225,7 +225,7 @@ TEST_CASE("contacts of red cells over depth", "[.doublet_scan]") {
   const MembraneLaws laws = {surface_law("skalak", {5, 10, 0}), surface_law("bending", {0.36, 0, 0}),
                              surface_law("volume", {1e4, 1})};
   const shape::TriangleSurface shape = shape::biconcave_disc(12, 3.91);
-  constexpr Well well{0.49, 1 / 3.84, 1.5};
+  constexpr MorseWell well{0.49, 1 / 3.84, 1.5};
   const auto relax = [](Doublet& cells, double depth, const std::string& begun) {
     cells.relax(depth, 4000, 0.05);
     const Doublet::Face face = cells.face();
