@@ -1,6 +1,7 @@
 // What a checkpoint says, as `rouleau run --resume` reads it: /facts, /state and arrays that are not those of the run,
 // under a checksum that is right. (Bytes that were changed later are what the checksum is for: tests/resume.)
 #include "run/checkpoint.hpp"
+#include "core/solver/solver.hpp"
 #include "plan/placed_cells.hpp"
 
 #include "json/parser.hpp"

@@ -104,7 +104,7 @@ TEST_CASE("a diverged run's summary says why, where and what to change") {
   Summary summary = small_summary();
   summary.status = "diverged";
   summary.failure =
-      Failure{"mach", 12, 0.5, 1.5, {1e-6, 2e-6}, -1, 0.4, 0.3, "The flow is too fast.", "Lower density_factor.", {}};
+      Failure{"mach", 12, 0.5, 1.5, {1e-6, 2e-6}, -1, 0.4, 0.3, "The flow is too fast.", "Lower density_factor."};
   const Json failure = to_json(summary)["failure"];
   CHECK(failure["reason"] == "mach");
   CHECK(failure["step"] == 12);

@@ -98,7 +98,7 @@ TEST_CASE("outcomes are compared number by number, means of the stages included"
       {{"stage", "shear"}, {"means", {{"relative_viscosity", {{"mean", 1.5}, {"deviation", 0.1}}}, {"from_s", 1.0}}}}};
   b.status = "diverged";
   b.failure =
-      Failure{"mach", 12, 0.5, 1.5, {1e-6, 2e-6}, -1, 0.4, 0.3, "The flow is too fast.", "Lower density_factor.", {}};
+      Failure{"mach", 12, 0.5, 1.5, {1e-6, 2e-6}, -1, 0.4, 0.3, "The flow is too fast.", "Lower density_factor."};
   const Json found = outcome_numbers({to_json(a), to_json(b)});
   CHECK(row(found, "strain")["differs"] == true);
   CHECK(row(found, "strain")["values"][1].get<double>() == Approx(a.strain + 1));
