@@ -12,8 +12,6 @@
 #include <boost/dll/shared_library.hpp>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <mutex>
 #include <string>
@@ -104,15 +102,12 @@ void require_version(const Manifest& manifest) {
   refuse(manifest, "has changed since its manifest was read", {"begin anew, when nobody writes to it any more"});
 }
 
-/// What a file holds, kept in memory that nobody can change any more until the process ends. Its name is one that the
+/// What a library's file holds, kept in memory that nobody can change any more until the process ends. Its name is one that the
 /// loader can open.
-fs::path sealed(const Manifest& manifest, const fs::path& file, bool own_symbols) {
+fs::path sealed(const Manifest& manifest, const std::string& bytes) {
   require_version(manifest);
-  std::ifstream from(file, std::ios::binary);
-  std::string bytes(std::istreambuf_iterator<char>(from), {});
-  if (own_symbols) (void)own_unique_symbols(bytes);
   const int copy = memfd_create(manifest.library.filename().c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  bool whole = copy >= 0 && from.is_open() && !from.bad();
+  bool whole = copy >= 0;
   for (std::size_t done = 0; whole && done < bytes.size();) {
     const ssize_t written = ::write(copy, bytes.data() + done, bytes.size() - done);
     whole = written > 0;
@@ -131,16 +126,15 @@ fs::path sealed_copy(const Manifest& manifest, const fs::path& file) {
   static auto& copies = *new Kept<fs::path>;
   const Version version = version_of(manifest);
   if (const fs::path* known = copies.find(version)) return *known;
-  return copies.put(version, sealed(manifest, file, false));
+  return copies.put(version, sealed(manifest, read_input(file, any_size)));
 }
 
 /// Whether the loader would give back, whole or in part, what this has loaded before: it knows files by name and
-/// number, and variables of inline functions and templates (C++) by name alone.
-bool takes_after_another(const fs::path& file) {
+/// number, and variables of inline functions and templates (C++) by name alone. `bytes`: what the file holds; these
+/// variables become its own.
+bool takes_after_another(const fs::path& file, std::string& bytes) {
   static std::atomic<bool> unique_before = false;
   static auto& loaded = *new Kept<bool>;
-  std::ifstream from(file, std::ios::binary);
-  std::string bytes(std::istreambuf_iterator<char>(from), {});
   bool another = own_unique_symbols(bytes) && unique_before.exchange(true);
   const FileStamp stamp = stamp_of(file);
   for (const Version& name : {Version{file, {}}, Version{{}, {stamp[0], stamp[1]}}}) {  // device and number
@@ -163,8 +157,9 @@ std::atomic<bool> kept_apart = false;
 
 boost::dll::shared_library load(const Manifest& manifest, const fs::path& file) {
   (void)library_sha256(manifest);
-  const bool copied = takes_after_another(file);
-  const fs::path from = copied ? sealed(manifest, file, true) : file;
+  std::string bytes = read_input(file, any_size);
+  const bool copied = takes_after_another(file, bytes);
+  const fs::path from = copied ? sealed(manifest, bytes) : file;
   boost::dll::shared_library library;
   std::error_code error;
   call_watched(manifest, "that runs when it is loaded",

@@ -23,7 +23,7 @@ SHORT = ["--max-steps", "20", "--quiet"]
 
 
 class Installation:
-    """A copy of the program and its plugins that a test may damage."""
+    """A copy of the program and its plugins that a test may damage; conformance is that of the build."""
 
     def __init__(self, folder):
         self.root = Path(folder) / "installation"
@@ -31,6 +31,7 @@ class Installation:
         shutil.copy(PROGRAM, self.root / "bin" / "rouleau")
         self.plugins = self.root / "lib" / "rouleau" / "plugins"
         shutil.copytree(PLUGINS, self.plugins)
+        (self.root / "libexec").symlink_to(PROGRAM.parent.parent / "libexec")
         self.program = self.root / "bin" / "rouleau"
 
     def run(self, *arguments, **options):

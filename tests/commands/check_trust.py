@@ -128,7 +128,6 @@ class Plugins_of_the_users_own(TrustCase):
 
     def setUp(self):
         super().setUp()
-        shutil.copytree(PROGRAM.parent.parent / "libexec", self.rouleau.root / "libexec")
         self.offered = self.path / "offered"
         shutil.move(self.morse, self.offered)
         self.data = self.path / "data"
