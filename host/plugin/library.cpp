@@ -102,8 +102,8 @@ void require_version(const Manifest& manifest) {
   refuse(manifest, "has changed since its manifest was read", {"begin anew, when nobody writes to it any more"});
 }
 
-/// What a library's file holds, kept in memory that nobody can change any more until the process ends. Its name is one that the
-/// loader can open.
+/// What a library's file holds, kept in memory that nobody can change any more until the process ends. Its name is one
+/// that the loader can open.
 fs::path sealed(const Manifest& manifest, const std::string& bytes) {
   require_version(manifest);
   const int copy = memfd_create(manifest.library.filename().c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING);
