@@ -11,7 +11,7 @@
 namespace rouleau::command {
 
 std::filesystem::path conform_program() {
-  const std::filesystem::path program = installation().programs / "conform";
+  std::filesystem::path program = installation().programs / "conform";
   if (std::filesystem::exists(program)) return program;
   throw Error(Cause::input_output, Place{program.string()}, "is not there, so no plugin can be checked",
               {"in a build of your own, cmake --build FOLDER --target conform makes it"});
