@@ -42,6 +42,18 @@ Values results(const Subject& subject, const plugin::ModelInstance& instance, co
   return outputs;
 }
 
+/// Where terms cancel, as beside the minimum of a potential, they are rounded by their own size. That is seen at other
+/// distances, from half of this one on: the largest result there; of other models the result itself.
+double size_of_terms(const Values& inputs, const std::vector<double>& values, std::size_t i) {
+  double size = std::abs(values[i]);
+  const auto distance = inputs.find("distance");
+  if (distance == inputs.end() || distance->second.size() != values.size()) return size;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (distance->second[k] >= distance->second[i] / 2) size = std::max(size, std::abs(values[k]));
+  }
+  return size;
+}
+
 /// The same SI numbers on another lattice give the same SI numbers.
 void compare_lattices(Worst& worst, const Subject& subject, const Trial& trial, Random& random) {
   const plugin::ModelSetting other = rescaled(trial.setting, random);
@@ -60,7 +72,8 @@ void compare_lattices(Worst& worst, const Subject& subject, const Trial& trial, 
     for (std::size_t i = 0; i < values.size(); ++i) {
       // What rounding of the numbers themselves was seen to do, with a margin for eight tries being few, and that of
       // the result. Products of more than fifty units are not expected.
-      double limit = 16 * tolerance.at(name)[i] + 64 * epsilon * std::abs(values[i]);
+      double limit = 16 * tolerance.at(name)[i] + 64 * epsilon * std::abs(values[i]) +
+                     16 * epsilon * size_of_terms(inputs, values, i);
       limit += std::numeric_limits<double>::min();  // numbers below have fewer digits
       // A new state may be a sum with the old one, which cancels.
       if (name.starts_with("state.")) limit += 4 * epsilon * std::abs(inputs.at(name)[i]);
