@@ -8,8 +8,11 @@ namespace rouleau::observe {
 
 namespace {
 
-/// What a surface has of each triangle, as means over the triangles around each node.
-std::vector<double> means_around_nodes(const core::Mesh& mesh, const std::vector<double>& of_triangle) {
+/// Tensions where the nodes of a cell are: of an outline's segments that begin there; of a surface's triangles the means
+/// around each node.
+std::vector<double> tensions_of(const core::Membranes&, int, std::vector<double> of_segment) { return of_segment; }
+std::vector<double> tensions_of(const core::Surfaces& surfaces, int cell, const std::vector<double>& of_triangle) {
+  const core::Mesh& mesh = surfaces.type_of(cell).mesh;
   std::vector<double> means;
   for (int i = 0; i < mesh.node_count(); ++i) {
     const auto begin = static_cast<std::size_t>(mesh.corners().first[i]),
@@ -55,9 +58,7 @@ MembraneSnapshot observe_membranes(core::AnySolver<D>& solver, const units::Latt
     }
   });
   field("tension", "N/m", 1, [&cells, tasks, tension](int cell, std::vector<double>& values) {
-    std::vector<double> tensions = tasks->tensions(cell);
-    if constexpr (in_space) tensions = means_around_nodes(cells.type_of(cell).mesh, tensions);
-    for (const double of_place : tensions) values.push_back(of_place * tension);
+    for (const double of_place : tensions_of(cells, cell, tasks->tensions(cell))) values.push_back(of_place * tension);
   });
   if constexpr (in_space) {
     field("curvature", "1/m", 1,

@@ -80,17 +80,18 @@ void for_halo_boxes(const core::Decomposition<D>& blocks, int rank, const std::v
       last[k] = domain.periodic[k] ? (nodes.end[k] - 1 + size * below) / size - below : 0;
       foreign = foreign || (out[k] != 0 && !domain.wraps(k));
     }
-    for (std::array<int, D> period = first; foreign;) {
+    if (!foreign) continue;
+    std::array<int, D> period = first;
+    int carried = 0;
+    do {
       for (const int other : near) {
         core::Box<D> owned = blocks.domain(other).block;
         for (int k = 0; k < D; ++k)
           owned.begin[k] += period[k] * domain.size[k], owned.end[k] += period[k] * domain.size[k];
         if (owned.meets(nodes)) function(owned.common(nodes), out, other);
       }
-      int k = 0;
-      for (; k < D && ++period[k] > last[k]; ++k) period[k] = first[k];
-      if (k == D) break;
-    }
+      for (carried = 0; carried < D && ++period[carried] > last[carried]; ++carried) period[carried] = first[carried];
+    } while (carried < D);
   }
 }
 
