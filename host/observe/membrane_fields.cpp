@@ -8,7 +8,7 @@ namespace rouleau::observe {
 
 namespace {
 
-/// Tensions where the nodes of a cell are: of an outline's segments that begin there; of a surface's triangles the means
+/// Tensions at the nodes of a cell: of an outline's segments that begin there; of a surface's triangles the means
 /// around each node.
 std::vector<double> tensions_of(const core::Membranes&, int, std::vector<double> of_segment) { return of_segment; }
 std::vector<double> tensions_of(const core::Surfaces& surfaces, int cell, const std::vector<double>& of_triangle) {
