@@ -77,8 +77,8 @@ struct RunState {
   /// Whether it can be that of a run of this plan, before which it may have come from anywhere.
   [[nodiscard]] bool fits(const plan::Plan& plan, const core::CellNodes& membranes) const;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RunState, stage, steps, stage_step, steps_before, time, strain, wall, stage_wall,
-                                 momentum_residual, observer, history, rheology, energy, costs, rest_watch,
-                                 equilibrium, stages, resumed)
+                                 momentum_residual, observer, history, rheology, energy, costs, rest_watch, equilibrium,
+                                 stages, resumed)
 };
 
 }  // namespace rouleau::run
