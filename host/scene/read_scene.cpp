@@ -48,7 +48,7 @@ void read_ends(const SceneFields& fields, Domain& domain, int axis) {
 /// As many as there are sides.
 std::vector<int> read_nodes(const SceneFields& fields, const Domain& domain) {
   fields.require("/domain", "nodes", "or \"numerics\": \"auto\" chooses them");
-  const auto nodes = fields.value<std::vector<int>>("/domain/nodes");
+  auto nodes = fields.value<std::vector<int>>("/domain/nodes");
   const int count = static_cast<int>(nodes.size());
   if (count == domain.dimension()) return nodes;
   fields.refuse("/domain/nodes", std::string(count > domain.dimension() ? "nodes has three numbers and size two"
