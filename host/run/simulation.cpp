@@ -139,9 +139,8 @@ class Simulation final : StepHooks {
     for (const std::string& pass : solver().passes().names) state_.costs.add(pass, 0, 0);
     clock_ = Clock::now();
     balance_.begin(computed_s());
-    stepper_.forget_forces();  // those known are of the stage before, in its units
     while (stage_->ended == Ending::none) {
-      stepper_.attend_next(state_.stage_step);
+      stepper_.begin(state_.stage_step);
       stepper_.take(solver().passes(), state_.stage_step, Stepper::never, options_.threads, &state_.costs);
       if (stage_->ended == Ending::none) cut_again();
     }

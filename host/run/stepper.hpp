@@ -14,15 +14,15 @@ namespace rouleau::run {
 class StepHooks {
  public:
   virtual ~StepHooks() = default;
-  /// Before the forces of a step that somebody attends to. False: the step is not taken, and the loop ends. Cells may come and
-  /// go here, with a solver that the next loop is given.
+  /// Before the forces of a step that somebody attends to. False: the step is not taken, and the loop ends. Cells may
+  /// come and go here, with a solver that the next loop is given.
   virtual bool before_forces(long step) = 0;
   /// Whether add_forces() is called in every step; all threads ask, and must get the same.
   [[nodiscard]] virtual bool adds_forces() const { return false; }
   /// The models' forces are on the nodes, and nothing has been spread yet.
   virtual void add_forces() {}
-  /// Forces computed: the state may be observed. Called where somebody attends to the step, or wants a look. False: the loop
-  /// ends here.
+  /// Forces computed: the state may be observed. Called where somebody attends to the step, or wants a look. False: the
+  /// loop ends here.
   virtual bool after_forces(long step, bool attended) = 0;
   /// Whether the last step must not be followed by another unseen; all threads ask, and must get the same.
   [[nodiscard]] virtual bool wants_a_look() const = 0;
@@ -37,17 +37,21 @@ class Stepper {
 
   explicit Stepper(StepHooks& hooks) : hooks_(hooks) {}
 
+  /// Another solver, or another state of it, is given next, from this step on: somebody attends to it, and no forces
+  /// are known.
+  void begin(long step) {
+    next_ = step;
+    known_ = false;
+  }
   /// The next step that somebody attends to whatever happens; none before it.
   void attend_next(long step) { next_ = step; }
-  /// Takes steps from `step` on, with so many threads, until `last` is reached or a hook ends it; returns the step that comes
-  /// next. `costs`: what the passes take goes there, up to each attended step; null: nowhere.
+  /// Takes steps from `step` on, with so many threads, until `last` is reached or a hook ends it; returns the step that
+  /// comes next. `costs`: what the passes take goes there, up to each attended step; null: nowhere.
   long take(const core::StepPasses& passes, long step, long last, int threads, PassCosts* costs = nullptr);
   /// The first half of a step, by this thread alone, if that has not been done: take() goes on from there.
   void compute_forces(const core::StepPasses& passes, long step);
   /// Whether the forces of the next step are computed.
   [[nodiscard]] bool forces_known() const { return known_; }
-  /// Another solver, or another state of it, is given next.
-  void forget_forces() { known_ = false; }
 
  private:
   class Crew;

@@ -125,8 +125,7 @@ class SimulationOf final : public Simulation, run::StepHooks {
     auto start = engine_.restore_cells(std::move(resumption.checkpoint), state, of_no_interest);
     state_ = std::move(state);
     engine_.begin(std::move(start));
-    stepper_.attend_next(state_.stage_step);
-    stepper_.forget_forces();
+    stepper_.begin(state_.stage_step);
     ending_ = run::Ending::none;
     over_ = false;
     whole_ = true;
@@ -164,8 +163,7 @@ class SimulationOf final : public Simulation, run::StepHooks {
 
   void begin_stage() {
     course_.begin(engine_.solver());
-    stepper_.attend_next(0);
-    stepper_.forget_forces();
+    stepper_.begin(0);
   }
 
   void next_stage() {

@@ -80,3 +80,18 @@ TEST_CASE("forces that are known are not computed again, and a caller may add to
   CHECK(loop.stepper.take(loop.passes, 0, 2, 2) == 2);
   CHECK(loop.said == Said{"after 0", "fluid", "forces", "add", "spread", "look at 1", "fluid"});
 }
+
+TEST_CASE("forces that are known are not computed again, but for another solver") {
+  for (const bool another : {false, true}) {
+    CAPTURE(another);
+    Loop loop;
+    loop.last = 0;  // the loop ends behind the forces of step 0
+    CHECK(loop.stepper.take(loop.passes, 0, 2, 2) == 0);
+    CHECK(loop.stepper.forces_known());
+    loop.said.clear();
+    loop.last = -1;
+    if (another) loop.stepper.begin(0);
+    CHECK(loop.stepper.take(loop.passes, 0, 1, 2) == 1);
+    CHECK(loop.said == (another ? Said{"before 0", "forces", "spread", "after 0", "fluid"} : Said{"fluid"}));
+  }
+}
