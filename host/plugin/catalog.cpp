@@ -11,6 +11,7 @@
 #include "json/document.hpp"
 #include "manifest_reader.hpp"
 #include "manifest_search.hpp"
+#include "scene/dimension_words.hpp"
 #include "trust.hpp"
 
 namespace rouleau::plugin {
@@ -188,9 +189,8 @@ const Manifest& Catalog::find(ModelKind kind, const std::string& id, const Place
       if (lock_) require_locked(*lock_, manifest, place);
       if (dimension && !manifest.works_in(*dimension)) {
         throw Error(Cause::bad_input, place,
-                    in_quotes(id) + " (" + manifest.title + ") does not work in " +
-                        (*dimension == 3 ? "three dimensions" : "two dimensions") +
-                        "; of this kind there do: " + listed(ids(kind, dimension)));
+                    in_quotes(id) + " (" + manifest.title + ") does not work in " + scene::words_of(*dimension).number +
+                        " dimensions; of this kind there do: " + listed(ids(kind, dimension)));
       }
       return manifest;
     }

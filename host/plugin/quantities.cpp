@@ -53,12 +53,12 @@ const Quantity& quantity_of(const Manifest& manifest, const std::string& name) {
                                                              {"sliding_speed", {{{0, 1, -1}}, "m/s"}},
                                                              {"force", {{{1, -1, -2}}, "Pa"}},
                                                              {"force_by_distance", {{{1, -2, -2}}, "Pa/m"}}};
-  static const Quantity energy_of_cell{{{1, 1, -2}}, "J/m"}, energy_of_body{{{1, 2, -2}}, "J"};
+  static const Quantity energy_of_cell[2] = {{{{1, 1, -2}}, "J/m"}, {{{1, 2, -2}}, "J"}};  // by dimension
   if (manifest.kind == ModelKind::collision) return number;
   const bool of_cell = manifest.gives_output("pressure") || manifest.gives_output("perimeter_tension") ||
                        manifest.gives_output("surface_tension");
   if (name != "energy" || !of_cell) return quantities.at(name);
-  return manifest.dimension() == 3 ? energy_of_body : energy_of_cell;
+  return energy_of_cell[manifest.dimension() - 2];
 }
 
 }  // namespace
@@ -79,28 +79,24 @@ const char* to_string(MembraneElement element) {
 
 const std::vector<std::string>& inputs_of(ModelKind kind, int dimension) {
   static const std::vector<std::string> collision = {"populations", "force", "relaxation_rate"};
-  static const std::vector<std::string> outline = {"stretch", "stretch_rate", "curvature", "rest_curvature",
-                                                   "area",    "rest_area",    "perimeter", "rest_perimeter"};
-  static const std::vector<std::string> surface = {"curvature",   "rest_curvature", "invariant_1",
-                                                   "invariant_2", "area_ratio",     "volume",
-                                                   "rest_volume", "surface_area",   "rest_surface_area"};
+  static const std::vector<std::string> membrane[2] = {
+      {"stretch", "stretch_rate", "curvature", "rest_curvature", "area", "rest_area", "perimeter", "rest_perimeter"},
+      {"curvature", "rest_curvature", "invariant_1", "invariant_2", "area_ratio", "volume", "rest_volume",
+       "surface_area", "rest_surface_area"}};
   static const std::vector<std::string> pair = {"distance", "normal_velocity", "tangential_velocity", "sliding_speed"};
-  if (kind == ModelKind::membrane) return dimension == 3 ? surface : outline;
+  if (kind == ModelKind::membrane) return membrane[dimension - 2];
   return kind == ModelKind::collision ? collision : pair;
 }
 
 const std::vector<std::string>& outputs_of(ModelKind kind, int dimension) {
   static const std::vector<std::string> collision = {"populations", "velocity"};
-  static const std::vector<std::string> outline = {"tension",         "moment",
-                                                   "pressure",        "perimeter_tension",
-                                                   "energy",          "tension_by_stretch",
-                                                   "tension_by_rate", "moment_by_curvature"};
-  static const std::vector<std::string> surface = {
-      "moment",        "pressure",      "energy",        "moment_by_curvature",
-      "stress_1",      "stress_2",      "area_tension",  "surface_tension",
-      "stress_1_by_1", "stress_1_by_2", "stress_2_by_2", "area_tension_by_ratio"};
+  static const std::vector<std::string> membrane[2] = {
+      {"tension", "moment", "pressure", "perimeter_tension", "energy", "tension_by_stretch", "tension_by_rate",
+       "moment_by_curvature"},
+      {"moment", "pressure", "energy", "moment_by_curvature", "stress_1", "stress_2", "area_tension", "surface_tension",
+       "stress_1_by_1", "stress_1_by_2", "stress_2_by_2", "area_tension_by_ratio"}};
   static const std::vector<std::string> pair = {"energy", "force", "force_by_distance"};
-  if (kind == ModelKind::membrane) return dimension == 3 ? surface : outline;
+  if (kind == ModelKind::membrane) return membrane[dimension - 2];
   return kind == ModelKind::collision ? collision : pair;
 }
 

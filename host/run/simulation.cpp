@@ -356,12 +356,10 @@ class Simulation final : StepHooks {
 Summary simulate(const plan::Plan& plan, const plan::PlanReport& report, const RunOptions& options,
                  files::RunDirectory* directory, const Ranks& ranks, const std::vector<int>& owner) {
   try {
-    const auto in = [&]<int D>(std::integral_constant<int, D>) {
+    return scene::in_dimension(plan.scene->domain.dimension(), [&]<int D>(std::integral_constant<int, D>) {
       const auto* given = std::get_if<core::Ranks<D>>(&ranks);
       return Simulation<D>(plan, report, options, directory, given != nullptr ? *given : core::Ranks<D>{}, owner).run();
-    };
-    return plan.scene->domain.dimension() == 3 ? in(std::integral_constant<int, 3>{})
-                                               : in(std::integral_constant<int, 2>{});
+    });
   } catch (...) {
     std::visit(
         [](const auto& of_lattice) {

@@ -1,7 +1,8 @@
-// What is called otherwise in three dimensions than in two.
+// What is called otherwise in three dimensions than in two, and the way from their number to templates.
 #pragma once
 
 #include <array>
+#include <type_traits>
 
 namespace rouleau::scene {
 
@@ -20,6 +21,12 @@ inline const DimensionWords& words_of(int dimension) {
        {"three", "D3Q19", "x, y and z", "volume", "volumes", "um3", "volume_m3", 1e18, "edge", "triangles",
         "edges of about one spacing", " are best", "edges are "}}};
   return words[static_cast<std::size_t>(dimension - 2)];
+}
+
+/// function(std::integral_constant<int, dimension>()), for what has the dimension as a template parameter.
+template <class Function>
+auto in_dimension(int dimension, Function function) {
+  return dimension == 3 ? function(std::integral_constant<int, 3>()) : function(std::integral_constant<int, 2>());
 }
 
 }  // namespace rouleau::scene

@@ -24,24 +24,20 @@ bool is_plain_name(const std::string& name) {
 }
 
 /// Shapes of one dimension are refused in the other, with what stands for them there.
-void check_shape(const SceneFields& fields, const std::string& pointer, bool in_space) {
-  struct Pair {
-    const char *plane, *space;
-  };
-  for (const auto& [plane, space] :
-       {Pair{"circle", "sphere"}, Pair{"ellipse", "ellipsoid"}, Pair{"biconcave", "mesh"}}) {
-    const char* const wrong = in_space ? plane : space;
-    if (std::string(wrong) == "biconcave" || !fields.has(pointer + "/" + wrong)) continue;
-    fields.refuse_key(pointer + "/" + wrong,
-                      in_quotes(wrong) +
-                          (in_space ? " is a shape of two dimensions, and the domain has three\ntake "
-                                    : " is a shape of three dimensions, and the domain has two\ntake ") +
-                          in_quotes(in_space ? space : plane));
+void check_shape(const SceneFields& fields, const std::string& pointer, int dimension) {
+  const std::size_t own = dimension - 2, other = 3 - dimension;
+  using Names = std::array<const char*, 2>;  // of what is alike in the plane and in space
+  for (const Names& names : {Names{"circle", "sphere"}, Names{"ellipse", "ellipsoid"}, Names{"biconcave", "mesh"}}) {
+    const std::string wrong = names[other];
+    if (wrong == "biconcave" || !fields.has(pointer + "/" + wrong)) continue;
+    fields.refuse_key(pointer + "/" + wrong, in_quotes(wrong) + " is a shape of " + words_of(5 - dimension).number +
+                                                 " dimensions, and the domain has " + words_of(dimension).number +
+                                                 "\ntake " + in_quotes(names[own]));
   }
 }
 
-Shape read_shape(const SceneFields& fields, const std::string& pointer, bool in_space) {
-  check_shape(fields, pointer, in_space);
+Shape read_shape(const SceneFields& fields, const std::string& pointer, int dimension) {
+  check_shape(fields, pointer, dimension);
   if (fields.has(pointer + "/sphere")) {
     return Sphere{fields.quantity(pointer + "/sphere/radius", "m", range::length),
                   fields.value_or(pointer + "/sphere/prestretch", 1.0)};
@@ -235,11 +231,10 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_vi
     // The name stands, whatever is wrong with the rest.
     CellType& type = types.emplace_back();
     type.name = name;
-    const bool in_space = domain.dimension() == 3;
-    fields.attempt([&] { type.shape = read_shape(fields, pointer + "/shape", in_space); });
+    fields.attempt([&] { type.shape = read_shape(fields, pointer + "/shape", domain.dimension()); });
     type.segments = 0;
     fields.attempt([&] {
-      if (in_space) {
+      if (domain.dimension() == 3) {
         type.triangles = read_triangles(fields, pointer, type, domain);
         return;
       }

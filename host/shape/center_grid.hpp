@@ -49,7 +49,7 @@ class CenterGrid {
 
  private:
   struct Squares {
-    static constexpr int most = D == 2 ? 2000 : 100;
+    static constexpr int most = std::array{2000, 100}[D - 2];
     Squares() = default;
     Squares(const Axis& whole, double width)
         : axis(whole), count(std::clamp(static_cast<int>(whole.length() / width), 1, most)) {}

@@ -48,16 +48,17 @@ double number_at(const Json& summary, const std::string& pointer) {
   return summary.contains(at) && summary[at].is_number() ? summary[at].get<double>() : std::nan("");
 }
 
-bool is_in_space(const Json& summary) { return summary.is_object() && summary.value("dimensions", 2) == 3; }
+int dimension_of(const Json& summary) { return summary.is_object() ? summary.value("dimensions", 2) : 2; }
 
 /// A run may stop for a reason, but before it writes what is no number. Null when it did.
-Json garbage_written(const fs::path& directory, bool in_space) {
+Json garbage_written(const fs::path& directory, int dimension) {
+  static const std::vector<std::string> of_cells[2] = {
+      {"x_m", "y_m", "deformation", "area_m2", "perimeter_m"},
+      {"x_m", "y_m", "z_m", "deformation", "volume_m3", "surface_area_m2"}};
   const auto table = [&](const char* name, const std::vector<std::string>& columns) {
     return find_no_number(directory / name, columns);
   };
-  std::optional<std::string> found =
-      in_space ? table("cells.csv", {"x_m", "y_m", "z_m", "deformation", "volume_m3", "surface_area_m2"})
-               : table("cells.csv", {"x_m", "y_m", "deformation", "area_m2", "perimeter_m"});
+  std::optional<std::string> found = table("cells.csv", of_cells[dimension - 2]);
   if (!found) found = table("series.csv", {"mach_max", "mass_drift", "kinetic_energy_J_per_m"});
   if (const fs::path frames = directory / "frames.h5"; !found && fs::exists(frames))
     found = files::find_no_number_in_frames(frames);
@@ -71,10 +72,9 @@ Json silent_failure(const Json& summary, const HealthCriteria& criteria) {
     const char *reason, *pointer, *words;
     double most;
   };
+  constexpr const char* changed[2] = {"a cell has changed its area by", "a cell has changed its volume by"};
   const std::array bounds{
-      Bound{"area_loss", "/conservation/area_drift_max",
-            is_in_space(summary) ? "a cell has changed its volume by" : "a cell has changed its area by",
-            criteria.area_drift},
+      Bound{"area_loss", "/conservation/area_drift_max", changed[dimension_of(summary) - 2], criteria.area_drift},
       Bound{"area_loss", "/conservation/area_leakage_max", "area_correction has kept back", criteria.area_drift},
       Bound{"energy_growth", "/energy/largest_growth_at_rest_relative", "energy at rest has grown by",
             criteria.energy_growth},
@@ -110,7 +110,7 @@ Judgement judge(const trial::TrialResult& result, const fs::path& directory, con
   Judgement judgement;
   judgement.end = trial::to_string(result.end);
   const bool ended = result.end == trial::TrialEnd::completed || result.end == trial::TrialEnd::diverged;
-  if (Json garbage = ended ? garbage_written(directory, is_in_space(result.summary)) : Json(); !garbage.is_null()) {
+  if (Json garbage = ended ? garbage_written(directory, dimension_of(result.summary)) : Json(); !garbage.is_null()) {
     judgement.failure = std::move(garbage);
   } else if (result.end == trial::TrialEnd::completed) {
     judgement.failure = silent_failure(result.summary, criteria);

@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "json/json_pointer.hpp"
 #include "matrix.hpp"
+#include "scene/dimension_words.hpp"
 #include "shape/extent.hpp"
 #include "units/units.hpp"
 
@@ -44,7 +45,7 @@ class Refinement {
       : document_(document),
         axis_(std::move(pointer)),
         scene_(scene),
-        in_space_(scene.at("domain").at("nodes").size() > 2),
+        key_(scene::words_of(static_cast<int>(scene.at("domain").at("nodes").size())).segments),
         of_(document.root()[Json::json_pointer(axis_)].value("of", "both")) {}
 
   [[nodiscard]] std::vector<Setting> settings() const {
@@ -73,11 +74,11 @@ class Refinement {
     }
     const Json types = scene_.value("cell_types", Json::object());
     for (const auto& [name, type] : types.items()) {
-      const bool follows = in_space_ && !type.contains("triangles") && !type.at("shape").contains("mesh");
+      const bool follows = !type.contains(key_) && !type.at("shape").contains("mesh");
       if (of_ == "both" && follows) continue;  // nodes of such a surface lie a lattice spacing apart anyway
       const long changed = pieces(type, "of " + in_quotes(name), of_ == "lattice" ? 1 : factor);
       if (of_ == "lattice") continue;
-      setting.set.emplace_back(json::child_pointer(json::child_pointer("/cell_types", name), key()), changed);
+      setting.set.emplace_back(json::child_pointer(json::child_pointer("/cell_types", name), key_), changed);
     }
     setting.label = number(setting.position, 3);
     // Whole numbers in full: 1024 nodes, not 1.02e+03.
@@ -86,11 +87,9 @@ class Refinement {
     return setting;
   }
 
-  [[nodiscard]] const char* key() const { return in_space_ ? "triangles" : "segments"; }
-
   /// Segments or triangles of a type whose pieces are so many times shorter.
   [[nodiscard]] long pieces(const Json& type, const std::string& whose, double factor) const {
-    if (!in_space_) return std::lround(type.at("segments").get<double>() * factor);
+    if (type.contains("segments")) return std::lround(type.at("segments").get<double>() * factor);
     if (type.contains("triangles")) return shape::divided_triangles(type["triangles"].get<int>(), 1 / factor);
     if (type.at("shape").contains("mesh")) {
       if (of_ == "lattice") return 0;
@@ -120,7 +119,7 @@ class Refinement {
   const json::Document& document_;
   std::string axis_;
   const Json& scene_;
-  bool in_space_;
+  std::string key_;  ///< of the number of pieces that a membrane is cut into
   std::string of_;
 };
 
