@@ -184,7 +184,7 @@ class Part {
   Part& operator=(const Part&) = delete;
 
   [[nodiscard]] core::Solver<T, Set>& solver() { return solver_; }
-  [[nodiscard]] const plan::Cells<D>& cells() const { return cells_; }
+  [[nodiscard]] const core::Cells<D>& cells() const { return cells_; }
   void step(const core::StepPasses& passes) {
     core::Barrier nobody(1);
     const auto run = [&](std::size_t first, std::size_t last) { passes.run(first, last, Worker{}, nobody); };
@@ -217,7 +217,7 @@ class Part {
   int runner_;
   double speed_;
   long steps_ = 0;
-  plan::Cells<D> cells_;
+  core::Cells<D> cells_;
   core::Solver<T, Set> solver_;
 };
 
@@ -235,7 +235,7 @@ template <class T, class Set>
 Outcome<T> outcome(Part<T, Set>& part, const core::Box<Set::dimension>& block, const std::vector<char>& owned = {}) {
   constexpr int D = Set::dimension;
   Outcome<T> out{.owned = owned, .places = {}, .populations = {}};
-  const plan::Cells<D>& cells = part.cells();
+  const core::Cells<D>& cells = part.cells();
   for (int c = 0; c < cells.cell_count(); ++c) {
     if (owned.empty()) out.owned.push_back(cells.owns(c) ? 1 : 0);
     if (out.owned[c] == 0) continue;
@@ -266,7 +266,7 @@ struct Recording {
 };
 
 template <int D>
-long known_of_others(const plan::Cells<D>& cells) {
+long known_of_others(const core::Cells<D>& cells) {
   long nodes = 0;
   for (int c = 0; c < cells.cell_count(); ++c) nodes += cells.is(c, core::Whose::others) ? cells.cells[c].count : 0;
   return nodes;
@@ -480,7 +480,7 @@ void print_costs(const plan::Plan& plan, const core::Decomposition<Set::dimensio
   std::printf("  %-46s %12.2f\n", "whole step", whole * 1e6);
 
   const double word = plan.scene->numerics.precision == scene::Precision::f64 ? 8 : 4;
-  const plan::CostOfSharing by = plan::cost_of_sharing(D);
+  const plan::CostOfSharing by = plan::cost_of_sharing[D - 2];
   const double plan_lattice = cost.lattice_bytes() / word * by.number_s,
                plan_ghosts = static_cast<double>(cost.ghost_nodes) * by.ghost_s,
                plan_shown = cost.sharing_s - cost.rows_s - plan_lattice - plan_ghosts;

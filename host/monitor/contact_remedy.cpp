@@ -83,7 +83,7 @@ std::string attraction_remedy(const plan::Plan& plan, const scene::StageSetting&
     depth = std::max(depth, stage.units.to_si(well.depth, units::dimension::tension));
     compression = std::max(compression, 3 * well.attraction);
     if (!(plan::depth_over_bending(plan, plan.facts, stage, scene.interactions[i], well.depth) >
-          plan::deepest_well_of_bare_cells(scene.domain.dimension())))
+          plan::deepest_well_of_bare_cells[scene.domain.dimension() - 2]))
       continue;
     for (const int type : scene.interactions[i].between) {
       const std::string& name = scene.cell_types[type].name;

@@ -24,7 +24,7 @@ LimitedStage::LimitedStage(const Plan& of, const scene::StageSetting& setting)
       scene(*of.scene),
       stage(setting),
       facts(of.facts.stages[setting.index]),
-      in_space(scene.domain.dimension() == 3),
+      by_dimension(scene.domain.dimension() - 2),
       most_viscous_tau(relaxation_time_of(scene::viscosity_range(scene.fluid).most, scene)),
       where(" (stage " + stage.stage->name + ")"),
       lower("lower " + stage.stage->density_factor_key) {
@@ -52,12 +52,13 @@ void add_compression(const LimitedStage& of, LimitList& limits) {
   }
 }
 
-/// In three dimensions, of second order in the spacing.
+/// Of second order in the spacing.
 void add_leak(const LimitedStage& of, LimitList& limits) {
-  if (!(of.facts.shear_rate > 0) || !of.in_space) return;
+  const double leak = (of.scene.cells.size() > 1 ? leak_of_many : leak_of_one)[of.by_dimension];
+  if (!(of.facts.shear_rate > 0 && leak > 0)) return;
   const bool kept = of.scene.numerics.area_correction;
   const double radius = shape::smallest_radius(of.scene) / scene::lattice_spacing(of.scene);
-  const double of_strain = (of.scene.cells.size() > 1 ? leak_of_many : leak_of_one) / (radius * radius);
+  const double of_strain = leak / (radius * radius);
   limits.below((kept ? "volume kept in a cell while the flow strains by 1, as measured"
                      : "volume that a cell is expected to leak") +
                    of.where,
@@ -73,7 +74,7 @@ void add_travel(const LimitedStage& of, LimitList& limits) {
                  of.lower + ", or set fluid.inertia to true: cells would drift across the flow wrongly", of.density);
   };
   const CellTravel& travel = of.facts.travel;
-  if (of.in_space && travel.mean > 0) add("move through the lattice", travel.mean);
+  if (!frame_follows[of.by_dimension] && travel.mean > 0) add("move through the lattice", travel.mean);
   if (travel.spread > 0) add("pass each other", travel.spread);
 }
 
@@ -81,10 +82,10 @@ namespace {
 
 double stretching_gain_of(const Plan& plan) {
   const scene::Numerics& n = plan.scene->numerics;
-  const bool in_space = plan.scene->domain.dimension() == 3;
-  const bool thin = n.tau < least_tau_of_full_gain && (n.slip_correction || in_space);
-  const bool sharp_contrast = in_space && plan.viscosity_contrast && membrane_coupling(n) == MembraneCoupling::sharp;
-  return thin || n.tau > (sharp_contrast ? most_tau_of_sharp_contrast : most_tau_of_full_gain)
+  const int by_dimension = plan.scene->domain.dimension() - 2;
+  const bool sharp_contrast = plan.viscosity_contrast && membrane_coupling(n) == MembraneCoupling::sharp;
+  return n.tau < least_tau_of_full_gain[by_dimension][n.slip_correction] ||
+                 n.tau > most_tau_of_full_gain[by_dimension][sharp_contrast]
              ? cautious_stretching_gain
              : stretching_gain;
 }
@@ -113,7 +114,7 @@ void add_stiffness(const LimitedStage& of, LimitList& limits) {
                (gains ? stretching_gain_of(plan) : loss) * membrane.stretching.limit, softer, of.density);
   limits.below("bending stiffness" + coupled + of.where, membrane.bending.value,
                (gains ? bending_gain : loss) * membrane.bending.limit, softer, of.density);
-  if (gains && of.facts.shear_rate > 0 && of.in_space) {
+  if (gains && of.facts.shear_rate > 0 && membrane.steps_of_mean > 0) {
     limits.below("strain during which the semi-implicit step holds forces" + of.where,
                  membrane.steps_of_mean * of.facts.shear_rate * of.stage.units.time, largest_held_strain_of(plan),
                  of.lower + ": membranes turn against the forces that they hold", of.density, 2);
@@ -145,7 +146,7 @@ void add_depth(const LimitedStage& of, std::size_t i, const std::string& named, 
   const double depth = depth_over_bending(of.plan, of.plan.facts, of.stage, interaction, well.depth);
   if (!(depth > 0)) return;
   limits.below("depth of " + named + " over bending modulus / radius^2, without a repulsion within membranes", depth,
-               deepest_well_of_bare_cells(of.scene.domain.dimension()),
+               deepest_well_of_bare_cells[of.by_dimension],
                "cells that come to rest may be squeezed until their own faces touch; add an interaction between [" +
                    in_quotes(of.scene.cell_types[interaction.between[0]].name) +
                    ", \"self\"], such as \"repulsion\" with about three times the well's depth and a cutoff below the "
@@ -238,7 +239,7 @@ double gap_between(const core::Surfaces& cells, const core::Domain<3>& domain) {
 
 template <int D>
 void measure(const scene::Scene& scene, StartGaps& gaps) {
-  const Cells<D> cells = make_known_cells<D>(scene, [](int) { return true; });
+  const core::Cells<D> cells = make_known_cells<D>(scene, [](int) { return true; });
   const core::Domain<D> domain = scene::lattice_domain<D>(scene);
   gaps.cells = std::min(gaps.cells, gap_between(cells, domain));
   if constexpr (D == 3) {
@@ -275,7 +276,8 @@ StartGaps start_gaps(const scene::Scene& scene) {
     if (scene::has_walls(scene.domain) && !scene.domain.tube_radius) gaps.walls = std::min(gaps.walls, gap);
   }
   if (placed.cells.empty() || placed.cells.size() > most) return gaps;
-  scene.domain.dimension() == 3 ? measure<3>(placed, gaps) : measure<2>(placed, gaps);
+  scene::in_dimension(scene.domain.dimension(),
+                      [&]<int D>(std::integral_constant<int, D>) { measure<D>(placed, gaps); });
   return gaps;
 }
 

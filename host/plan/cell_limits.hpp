@@ -17,7 +17,7 @@ struct LimitedStage {
   const scene::Scene& scene;
   const scene::StageSetting& stage;
   const StageFacts& facts;
-  bool in_space;
+  int by_dimension;          ///< where constants for two and for three dimensions stand: the dimension less 2
   double most_viscous_tau;   ///< relaxation time of the most viscous layer
   std::string where, lower;  ///< " (stage shear)", "lower numerics.density_factor"
   RemediedBy density;        ///< nothing where the scene gives the stage a factor, which is not auto's to change

@@ -21,6 +21,7 @@ inline constexpr double thinnest_layer = 2.5;            ///< spacings, that osc
 inline constexpr double largest_delay = 0.1;    ///< rad, of an oscillation by the density factor [oscillations]
 inline constexpr double largest_travel = 0.05;  ///< Reynolds number of cells that travel [travelling cells]
 inline constexpr double follows_from = 0.002;   ///< the same, from which the frame moves along [travelling cells]
+inline constexpr bool frame_follows[2] = {true, false};  ///< whether it can, by dimension [travelling cells]
 
 // ---- the start of a flow ----
 inline constexpr double largest_error_by_start = 0.01;     ///< relative, without a target [start of a flow]
@@ -34,8 +35,8 @@ inline constexpr double largest_compression_by_shear = 0.01;  ///< of a cell's c
 inline constexpr double compression_by_pressure = 3;          ///< density over pressure, exact [compression]
 inline constexpr double largest_compression_by_attraction = 0.1;  ///< 3 times the strongest attraction [attraction]
 inline constexpr double largest_compression_by_prestress = 1e-3;  ///< 3 times tension over radius [compression]
-inline constexpr double leak_of_one = 0.1;                        ///< volume in a strain of 1, times radius^2 [leaks]
-inline constexpr double leak_of_many = 0.5;                       ///< the same in a crowd [leaks]
+/// Volume that a cell loses in a strain of 1, times radius^2, by dimension: alone, and in a crowd [leaks].
+inline constexpr double leak_of_one[2] = {0, 0.1}, leak_of_many[2] = {0, 0.5};
 
 // ---- how stiff membranes may be ----
 struct AtTau {
@@ -52,12 +53,12 @@ inline constexpr double cautious_stretching_gain = 4;   ///< beyond the range of
 inline constexpr double bending_gain = 10;              ///< [semi-implicit step]
 inline constexpr double semi_implicit_loss = 0.5;       ///< with a kernel that zigzags [semi-implicit step]
 inline constexpr double least_semi_implicit_tau = 0.6;  ///< below it gains nothing [semi-implicit step]
-inline constexpr double least_tau_of_full_gain = 0.9;   ///< with the slip correction or in space [semi-implicit step]
-inline constexpr double most_tau_of_full_gain = 5;      ///< [semi-implicit step]
-inline constexpr double most_tau_of_sharp_contrast =
-    3;                                               ///< two viscosities, slip correction, sharp6 [semi-implicit step]
-inline constexpr double largest_held_strain = 0.15;  ///< while a step holds forces [held forces]
-inline constexpr double held_on_companions = 6;      ///< times as long on a companion's lattice [held forces]
+/// Relaxation times of the full gain, by dimension: the least without and with the slip correction, the most without
+/// and with all of two viscosities, slip correction and the kernel sharp6 [semi-implicit step].
+inline constexpr double least_tau_of_full_gain[2][2] = {{0, 0.9}, {0.9, 0.9}};
+inline constexpr double most_tau_of_full_gain[2][2] = {{5, 5}, {5, 3}};
+inline constexpr double largest_held_strain = 0.15;     ///< while a step holds forces [held forces]
+inline constexpr double held_on_companions = 6;         ///< times as long on a companion's lattice [held forces]
 inline constexpr double largest_slip_smoothing = 0.04;  ///< variance over radius^2 [smoothed slip]
 inline constexpr double nowhere = std::numeric_limits<double>::infinity();
 
@@ -77,8 +78,8 @@ struct KernelFacts {
 const KernelFacts& kernel_named(const std::string& name);
 
 // ---- cells in contact ----
-/// Deepest well between cells, over bending modulus / radius^2, without a potential within membranes [deep wells].
-constexpr double deepest_well_of_bare_cells(int dimension) { return dimension == 2 ? 40 : 250; }
+/// Deepest well between cells over bending modulus / radius^2, without a potential within membranes [deep wells].
+inline constexpr double deepest_well_of_bare_cells[2] = {40, 250};
 /// Deepest well, over the stretching modulus, with which "auto" takes the slip correction in two dimensions [deep
 /// wells].
 inline constexpr double deepest_corrected_well = 0.02;
@@ -107,38 +108,67 @@ inline constexpr double measured_ratio = 5;
 struct CapillaryRange {
   double least, most;
 };
-/// Those for which errors were measured, in two dimensions and in three.
-inline constexpr CapillaryRange measured_capillary{0.003, 0.8}, measured_capillary_in_space{0.0035, 0.7};
-/// Error of a shape at ten spacings a radius and tau 1, and the power of the spacing with which it falls.
+/// What a lattice leaves in a shape at ten spacings a radius and tau 1, and the power of the spacing with which it
+/// falls; slip adds what falls with the first power.
 struct ShapeError {
-  double at_ten, order;
+  double at_ten, order, slip_at_ten = 0;
 };
 /// The first at viscosity ratio 1, the second at measured_ratio.
 using ShapeErrors = ShapeError[2];
-
-namespace in_plane {
-inline constexpr ShapeErrors round_cell{{0.0065, 2}, {0.029, 2}}, thin_cell{{0.040, 3}, {0.039, 2}};  // [lattice]
-/// Stiffer round cells than at `stiff`, and softer ones than at `soft`, have larger errors, by these powers [lattice].
+/// By dimension and MembraneCoupling, of round cells and of thin ones; in space those of thin ones are the others'
+/// [lattice].
+inline constexpr ShapeErrors shape_errors[2][3][2] = {
+    {{{{0.0065, 2, 0.014}, {0.029, 2, 0.025}}, {{0.040, 3, 0.014}, {0.039, 2, 0.025}}},
+     {{{0.0065, 2}, {0.029, 2}}, {{0.040, 3}, {0.039, 2}}},
+     {{{0.0065, 2}, {0.029, 2}}, {{0.040, 3}, {0.039, 2}}}},
+    {{{{0.031, 2, 0.022}, {0.031, 2, 0.022}}, {{0.031, 2, 0.022}, {0.031, 2, 0.022}}},
+     {{{0.031, 2, 0.022}, {0.031, 2, 0.022}}, {{0.031, 2, 0.022}, {0.031, 2, 0.022}}},
+     {{{0.015, 2}, {0.024, 2}}, {{0.015, 2}, {0.024, 2}}}}};
+/// Stiffer cells than at `stiff`, and softer ones than at `soft`, have larger errors, by these powers.
 struct CapillaryErrors {
   double stiff, stiff_power, soft, soft_power;
 };
-inline constexpr CapillaryErrors by_capillary[2] = {{0.05, 0.3, 0.2, 0.6}, {0.0125, 0.2, 0.2, 0.3}};
-inline constexpr double thin_growth_with_tau = 0.2;         ///< of thin cells, for each unit of tau above 1 [lattice]
+/// By dimension, of round cells and of thin ones, at both viscosity ratios [lattice].
+inline constexpr CapillaryErrors by_capillary[2][2][2] = {
+    {{{0.05, 0.3, 0.2, 0.6}, {0.0125, 0.2, 0.2, 0.3}}, {{1, 0, 1, 0}, {1, 0, 1, 0}}},
+    {{{1, 0, 1, 0}, {1, 0, 1, 0}}, {{1, 0, 1, 0}, {1, 0, 1, 0}}}};
+/// Growth of the shape's error for each unit of tau above 1, by dimension, of round cells and of thin ones [lattice].
+inline constexpr double growth_with_tau[2][2] = {{0, 0.2}, {0, 0}};
+/// Capillary numbers for which errors were measured; `unstretched`: of membranes that do not resist stretching, too.
+struct MeasuredCapillary {
+  bool known = false;
+  double least = 0, most = 0;
+  bool unstretched = false;
+};
+/// By dimension and MembraneCoupling [lattice].
+inline constexpr MeasuredCapillary measured_capillary[2][3] = {
+    {{true, 0.003, 0.8, true}, {true, 0.003, 0.8, true}, {true, 0.003, 0.8, true}}, {{}, {}, {true, 0.0035, 0.7}}};
+inline constexpr const char* sharp_kernel = "sharp6";
+inline constexpr const char* kernel_of_auto[2] = {"peskin4", sharp_kernel};  ///< by dimension
+/// Cells without slip correction pass each other too far apart, of first order, by dimension [passing cells].
+inline constexpr double passing_at_ten[2] = {0.06, 0.085};
+/// Of strains at which things happen, by dimension, and of a thin cell that begins along the flow [dense fluid].
+inline constexpr double motion_by_reynolds[2][2] = {{0.024, 0.076}, {0.037, 0.037}};
+inline constexpr double along_the_flow = 0.5;  ///< rad, to be one [dense fluid]
+/// Es of a neo-Hookean membrane over a third of its stretching stiffness, by dimension: a surface has one of 4 Es.
+inline constexpr double shear_share[2] = {1, 0.75};
+/// The smallest radii of a cell, in spacings, that leave room for error bars; as they are for most cells.
+struct LeastRadii {
+  double run = 10;       ///< for which errors were measured, too
+  double companion = 4;  ///< on the lattice of the companion for the lattice
+  double coarsest = 4;   ///< on that of the companion for the order
+};
+/// By dimension and MembraneCoupling, of any cells and of spheres alone. Of what a denser fluid does to red cells of
+/// viscosity ratio 5, 5.9 spacings show 0.4, 6.8 and 7.8 show 0.6 and 0.8.
+inline constexpr LeastRadii least_radii_of[2][3][2] = {{{}, {}, {}}, {{}, {}, {{10, 7, 5.5}, {6.5}}}};
+
+namespace in_plane {
 inline constexpr double by_compression[2] = {0.065, 0.15};  ///< of compression^2 times Reynolds number [stiff cells]
-inline constexpr double slip_at_ten[2] = {0.014, 0.025};    ///< without slip correction, of first order [lattice]
-inline constexpr double passing_at_ten = 0.06;       ///< too far apart, without it, of first order [passing cells]
-inline constexpr double motion_by_reynolds = 0.024;  ///< of strains at which things happen [dense fluid]
-inline constexpr double motion_from_along_the_flow = 0.076;  ///< the same of a thin cell along the flow [dense fluid]
-inline constexpr double along_the_flow = 0.5;                ///< rad, to be one [dense fluid]
 inline constexpr double of_shape = 0.5, shape_rate = 1.2, relaxation_by_reynolds = 0.3;   // [steady state]
 inline constexpr double of_viscosity = 3.4, viscosity_rate = 0.7, measured_height = 6.4;  // [steady state]
 }  // namespace in_plane
 
 namespace in_space {
-inline constexpr double kernel_at_ten = 0.031, slip_at_ten = 0.022;  ///< of second and of first order [lattice]
-inline constexpr double passing_at_ten = 0.085;                      ///< as in the plane [passing cells]
-inline constexpr ShapeErrors sharp{{0.015, 2}, {0.024, 2}};          ///< with slip correction and sharp6 [lattice]
-inline constexpr double motion_by_reynolds = 0.037;                  ///< as in the plane [dense fluid]
 inline constexpr double steady_amplitude = 0.5, steady_rate[2] = {0.55, 0.38};  // [steady state]
 }  // namespace in_space
 
@@ -150,11 +180,13 @@ inline constexpr double tube_error = 0.65;     ///< of the flow rate, over the s
 // ---- costs: seconds on one core, bytes ----
 namespace cost {
 inline constexpr double of_node[2][2] = {{0.85e-9, 1.5e-9}, {7e-9, 13e-9}};  ///< by dimension, f32 and f64 [time]
-inline constexpr double of_outline_node = 50e-9;                             ///< s [time]
-inline constexpr double of_surface_node = 100e-9;                            ///< s, and the following on top [time]
-inline constexpr double near_surface = 100e-9, near_by_square = 1.8e-9;      ///< s, of each surface that is near [time]
-inline constexpr double sharp_kernel = 55e-9, slip = 55e-9, slip_of_contrast = 110e-9, semi_implicit = 60e-9;  // [time]
+/// s, of a membrane's node, and what is on top: of each surface that is near, by the square of the cutoff too [time].
+struct OfMembraneNode {
+  double alone, near = 0, near_by_square = 0, sharp_kernel = 0, slip = 0, slip_of_contrast = 0, semi_implicit = 0;
+};
+inline constexpr OfMembraneNode of_membrane_node[2] = {{50e-9}, {100e-9, 100e-9, 1.8e-9, 55e-9, 55e-9, 110e-9, 60e-9}};
 inline constexpr double bytes_of_node[2] = {400, 1200};  ///< of a membrane [memory]
+inline constexpr int velocities[2] = {9, 19};            ///< of the lattice
 }  // namespace cost
 /// HDF5's own bytes in frames.h5 [files].
 namespace hdf5 {

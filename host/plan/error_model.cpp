@@ -15,9 +15,9 @@ namespace rouleau::plan {
 namespace {
 
 /// How much larger the error of round cells is than at usual capillary numbers.
-double growth(const in_plane::CapillaryErrors& errors, const CapillaryRange& capillary) {
-  const double least = std::max(capillary.least, measured_capillary.least);
-  const double most = std::min(capillary.most, measured_capillary.most);
+double growth(const CapillaryErrors& errors, const MeasuredCapillary& measured, const CapillaryRange& capillary) {
+  const double least = std::max(capillary.least, measured.least);
+  const double most = std::min(capillary.most, measured.most);
   return std::max(
       {1.0, std::pow(errors.stiff / least, errors.stiff_power), std::pow(most / errors.soft, errors.soft_power)});
 }
@@ -46,10 +46,10 @@ bool begins_along_the_flow(const scene::Scene& scene) {
   if (scene.cells.size() != 1) return false;
   const scene::CellPlacement& cell = scene.cells[0];
   return is_thin(scene.cell_types[cell.type].shape) &&
-         std::abs(std::remainder(cell.angle, std::numbers::pi)) < in_plane::along_the_flow;
+         std::abs(std::remainder(cell.angle, std::numbers::pi)) < along_the_flow;
 }
 
-double thin_growth(double tau) { return 1 + in_plane::thin_growth_with_tau * std::max(0.0, tau - 1); }
+double grown(double with_tau, double tau) { return 1 + with_tau * std::max(0.0, tau - 1); }
 
 }  // namespace
 
@@ -59,13 +59,10 @@ MembraneCoupling membrane_coupling(const scene::Numerics& numerics) {
 }
 
 LeastRadii least_radii(const scene::Scene& scene, MembraneCoupling coupling) {
-  if (scene.domain.dimension() == 2 || coupling != MembraneCoupling::sharp) return {};
   const bool spheres = std::all_of(scene.cells.begin(), scene.cells.end(), [&](const scene::CellPlacement& cell) {
     return std::holds_alternative<scene::Sphere>(scene.cell_types[cell.type].shape);
   });
-  if (spheres) return {.run = 6.5};
-  // Of what a denser fluid does to red cells of viscosity ratio 5, 5.9 spacings show 0.4, 6.8 and 7.8 show 0.6 and 0.8.
-  return {.run = 10, .companion = 7, .coarsest = 5.5};
+  return least_radii_of[scene.domain.dimension() - 2][static_cast<int>(coupling)][spheres];
 }
 
 double resolved_radius(const scene::Shape& shape) {
@@ -76,24 +73,19 @@ double resolved_radius(const scene::Shape& shape) {
 
 double lattice_error(const scene::Shape& shape, double radius, double viscosity_ratio, double tau, int dimension,
                      MembraneCoupling coupling, const CapillaryRange& capillary) {
-  if (dimension == 3 && coupling == MembraneCoupling::sharp) return between(in_space::sharp, viscosity_ratio, radius);
-  if (dimension == 3) return in_space::kernel_at_ten * 100 / (radius * radius) + in_space::slip_at_ten * 10 / radius;
-  double error = 0;
-  if (is_thin(shape)) {
-    error = between(in_plane::thin_cell, viscosity_ratio, radius) * thin_growth(tau);
-  } else {
-    const auto& [at_one, at_measured] = in_plane::by_capillary;
-    error = between(in_plane::round_cell, viscosity_ratio, radius) *
-            between(growth(at_one, capillary), growth(at_measured, capillary), viscosity_ratio);
-  }
-  if (coupling == MembraneCoupling::plain)
-    error += between(in_plane::slip_at_ten[0], in_plane::slip_at_ten[1], viscosity_ratio) * 10 / radius;
-  return error;
+  const int by_dimension = dimension - 2, by_coupling = static_cast<int>(coupling);
+  const bool thin = is_thin(shape);
+  const ShapeErrors& errors = shape_errors[by_dimension][by_coupling][thin];
+  const auto& [at_one, at_measured] = by_capillary[by_dimension][thin];
+  const MeasuredCapillary& measured = measured_capillary[by_dimension][by_coupling];
+  return between(errors, viscosity_ratio, radius) * grown(growth_with_tau[by_dimension][thin], tau) *
+             between(growth(at_one, measured, capillary), growth(at_measured, measured, capillary), viscosity_ratio) +
+         between(errors[0].slip_at_ten, errors[1].slip_at_ten, viscosity_ratio) * 10 / radius;
 }
 
 double passing_error(double radius, int dimension, MembraneCoupling coupling) {
   if (coupling != MembraneCoupling::plain) return 0;
-  return (dimension == 3 ? in_space::passing_at_ten : in_plane::passing_at_ten) * 10 / radius;
+  return passing_at_ten[dimension - 2] * 10 / radius;
 }
 
 double stiffness_error(double compression, double reynolds, double viscosity_ratio) {
@@ -115,9 +107,7 @@ double flow_start_error(const scene::Domain& domain, double spacing, double tau)
 }
 
 double motion_error(double reynolds, const scene::Scene& scene) {
-  if (scene.domain.dimension() == 3) return in_space::motion_by_reynolds * reynolds;
-  return (begins_along_the_flow(scene) ? in_plane::motion_from_along_the_flow : in_plane::motion_by_reynolds) *
-         reynolds;
+  return motion_by_reynolds[scene.domain.dimension() - 2][begins_along_the_flow(scene)] * reynolds;
 }
 
 double steady_error(const SteadyApproach& approach) {
@@ -125,7 +115,7 @@ double steady_error(const SteadyApproach& approach) {
   const double to_height = approach.height / (2 * std::numbers::pi);
   const double times = approach.strain / (approach.reynolds * to_height * to_height);
   const double shape = of_shape * std::pow(measured_height / approach.height, 3) * std::exp(-shape_rate * times);
-  const double relaxation = capsule_relaxation(std::min(approach.capillary, measured_capillary.most),
+  const double relaxation = capsule_relaxation(std::min(approach.capillary, measured_capillary[0][0].most),
                                                std::max(1.0, approach.viscosity_ratio));
   const double late = relaxation_by_reynolds * approach.reynolds * std::exp(-approach.strain / relaxation);
   return std::max(shape + late, of_viscosity * approach.area_fraction * std::exp(-viscosity_rate * times));
@@ -140,12 +130,13 @@ double steady_error_in_space(double reynolds, double strain, double viscosity_ra
 double order_of_lattice_error(const scene::Scene& scene) {
   if (scene.cells.empty()) return 2;
   if (!scene.numerics.slip_correction) return 1;
-  if (scene.domain.dimension() == 3) return 2;
-  double least = in_plane::thin_cell[0].order;
+  const int by_coupling = static_cast<int>(membrane_coupling(scene.numerics));
+  double least = INFINITY;
   for (const scene::CellPlacement& cell : scene.cells) {
     const scene::CellType& type = scene.cell_types[cell.type];
     const double ratio = type.interior_viscosity / scene.fluid.viscosity;
-    least = std::min(least, order_between(is_thin(type.shape) ? in_plane::thin_cell : in_plane::round_cell, ratio));
+    least = std::min(
+        least, order_between(shape_errors[scene.domain.dimension() - 2][by_coupling][is_thin(type.shape)], ratio));
   }
   return least;
 }
@@ -154,7 +145,7 @@ double growth_of_lattice_error(const scene::Scene& scene, double tau) {
   const bool thin = std::any_of(scene.cells.begin(), scene.cells.end(), [&](const scene::CellPlacement& cell) {
     return is_thin(scene.cell_types[cell.type].shape);
   });
-  return thin && scene.domain.dimension() == 2 ? thin_growth(tau) : 1;
+  return grown(growth_with_tau[scene.domain.dimension() - 2][thin], tau);
 }
 
 }  // namespace rouleau::plan

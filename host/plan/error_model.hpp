@@ -23,14 +23,7 @@ enum class MembraneCoupling {
   corrected,  ///< with the slip correction
   sharp       ///< and with the kernel sharp6
 };
-inline constexpr const char* sharp_kernel = "sharp6";
 MembraneCoupling membrane_coupling(const scene::Numerics& numerics);
-/// The smallest radii of a cell, in spacings, that leave room for error bars; as they are for most cells.
-struct LeastRadii {
-  double run = 10;       ///< for which errors were measured, too
-  double companion = 4;  ///< on the lattice of the companion for the lattice
-  double coarsest = 4;   ///< on that of the companion for the order
-};
 LeastRadii least_radii(const scene::Scene& scene, MembraneCoupling coupling);
 
 /// What a lattice leaves in the shape and the motion of a cell with this resolved radius, in spacings; tau is the

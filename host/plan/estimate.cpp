@@ -105,14 +105,13 @@ double surfaces_near_a_node(const scene::Scene& scene, double cutoff) {
 }
 
 double cost_of_membrane_node(int dimension, const MembraneScheme& scheme) {
-  if (dimension == 2) return cost::of_outline_node;
-  double all = cost::of_surface_node;
+  const cost::OfMembraneNode& of = cost::of_membrane_node[dimension - 2];
+  double all = of.alone;
   // The triangles of a surface within the cutoff are as many as its square says.
-  if (scheme.cutoff > 0)
-    all += scheme.near * (cost::near_surface + cost::near_by_square * scheme.cutoff * scheme.cutoff);
-  if (scheme.sharp_kernel) all += cost::sharp_kernel;
-  if (scheme.slip_correction) all += scheme.viscosity_contrast ? cost::slip_of_contrast : cost::slip;
-  if (scheme.semi_implicit) all += cost::semi_implicit;
+  if (scheme.cutoff > 0) all += scheme.near * (of.near + of.near_by_square * scheme.cutoff * scheme.cutoff);
+  if (scheme.sharp_kernel) all += of.sharp_kernel;
+  if (scheme.slip_correction) all += scheme.viscosity_contrast ? of.slip_of_contrast : of.slip;
+  if (scheme.semi_implicit) all += of.semi_implicit;
   return all;
 }
 
@@ -160,7 +159,7 @@ void require_memory(double bytes, const std::string& what) {
 Estimate estimate(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   const double nodes = scene.domain.node_count();
-  const int dimension = scene.domain.dimension(), velocities = dimension == 2 ? 9 : 19;
+  const int dimension = scene.domain.dimension(), velocities = cost::velocities[dimension - 2];
   const double membrane = membrane_nodes(scene);
   const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
   Estimate estimate;

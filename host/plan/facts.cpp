@@ -230,8 +230,7 @@ double explicit_margin(const Facts& facts) {
 std::optional<RecoveryRates> recovery_rates(const Models& models, const Facts& facts) {
   if (!models.has_cells) return std::nullopt;
   RecoveryRates rates{INFINITY, 0};
-  const double share =
-      models.scene->domain.dimension() == 3 ? 0.75 : 1;  // a neo-Hookean surface has a stretching stiffness of 4 Es
+  const double share = shear_share[models.scene->domain.dimension() - 2];
   for (const MembraneFacts& membrane : facts.stages.front().models->membranes) {
     const double rate = share * membrane.recovery_rate;
     rates = {std::min(rates.least, rate), std::max(rates.most, rate)};

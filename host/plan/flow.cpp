@@ -127,7 +127,7 @@ CellTravel cell_travel(const scene::Scene& scene, const scene::StageSetting& sta
 }
 
 bool follows_cells(const scene::Scene& scene, const scene::StageSetting& stage) {
-  if (scene.fluid.inertia || scene.cells.empty() || scene.domain.dimension() == 3) return false;
+  if (scene.fluid.inertia || scene.cells.empty() || !frame_follows[scene.domain.dimension() - 2]) return false;
   // Between no walls a driven fluid goes faster and faster, and cells with it.
   return scene.domain.periodic[1] ? stage.is_driven() : cell_travel(scene, stage).mean > follows_from;
 }

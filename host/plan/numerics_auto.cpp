@@ -1,6 +1,7 @@
 #include "numerics_auto.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -21,6 +22,17 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* origin = "numerics.auto";
+
+/// By dimension.
+constexpr const char* why_uncorrected[2] = {
+    "left out, for plasma between cells drains with it, and some that attract each other strongly "
+    "then become so thin that they cross themselves",
+    "left out: in three dimensions it was measured with the kernel sharp6 alone, and without layers"};
+/// Into how many pieces a membrane is cut before they are chosen, but one of a shape that has them.
+constexpr struct {
+  const char *key, *but_of;
+  int count;
+} draft_pieces[2] = {{"segments", "", 64}, {"triangles", "mesh", 320}};
 
 /// What a person would write: three digits, rounded down. Whole numbers stay whole.
 Json three_digits_below(double value) {
@@ -97,7 +109,6 @@ NumericsChoice NumericsProblem::chosen(const Trial& best) const {
   };
   const auto percent = [](double share) { return number(100 * share, 2) + " %"; };
   const double spacing = spacing_of(best.nodes);
-  const bool in_space = scene_.domain.dimension() == 3;
   if (!written_.at("domain").contains("nodes")) {
     choose("/domain/nodes", best.nodes,
            has_cells_ ? "the smallest cell's radius is " + number(radius_ / spacing, 3) +
@@ -105,7 +116,8 @@ NumericsChoice NumericsProblem::chosen(const Trial& best) const {
                       : std::to_string(best.nodes[1]) + " rows: " + percent(best.error.resolution) + " of error");
   }
   for (const scene::CellType& type : scene_.cell_types) {
-    if (in_space || written_.at("cell_types").at(type.name).contains("segments")) continue;
+    // Nodes of surfaces lie a spacing apart anyway.
+    if (type.segments == 0 || written_.at("cell_types").at(type.name).contains("segments")) continue;
     const double segments = std::clamp(std::round(shape::shape_perimeter(type.shape) / spacing), 8.0, 100000.0);
     choose("/cell_types/" + type.name + "/segments", static_cast<int>(segments), "one for each spacing");
   }
@@ -117,14 +129,12 @@ NumericsChoice NumericsProblem::chosen(const Trial& best) const {
   if (has_cells_) {
     set("coupling", "auto", "explicit or semi-implicit, by the limits of the membranes' stiffness");
     const bool corrected = coupling_ != MembraneCoupling::plain;
-    if (coupling_ == MembraneCoupling::sharp && in_space)
+    if (coupling_ == MembraneCoupling::sharp)
       set("kernel", sharp_kernel,
           "has no second moment: what the slip correction leaves is a fifth of that of peskin4");
     set("slip_correction", corrected,
-        corrected  ? "takes the first-order error of the immersed boundary out"
-        : in_space ? "left out: in three dimensions it was measured with the kernel sharp6 alone, and without layers"
-                   : "left out, for plasma between cells drains with it, and some that attract each other strongly "
-                     "then become so thin that they cross themselves");
+        corrected ? "takes the first-order error of the immersed boundary out"
+                  : why_uncorrected[scene_.domain.dimension() - 2]);
     set("area_correction", true, std::string("cells keep their ") + scene_.domain.words().contents);
   }
   choice.doubt = doubt_about(best);
@@ -166,15 +176,14 @@ std::string NumericsProblem::doubt_about(const Trial& best) const {
     return "numerics.auto: the error of cells was measured in a fluid of one viscosity, and fluid.layers has others";
   if (viscosity_ratio_ < 0.99 || viscosity_ratio_ > 1.01 * measured_ratio)
     return unknown("viscosity ratio", viscosity_ratio_, 1, measured_ratio);
-  const bool in_space = scene_.domain.dimension() == 3;
-  if ((in_space && coupling_ != MembraneCoupling::sharp) || !bounds_.recovery) return {};
+  const MeasuredCapillary& measured = measured_capillary[scene_.domain.dimension() - 2][static_cast<int>(coupling_)];
+  if (!measured.known || !bounds_.recovery) return {};
   const auto& [least, most] = capillary_;
-  const auto& [least_measured, most_measured] = in_space ? measured_capillary_in_space : measured_capillary;
-  if (in_space && !std::isfinite(most))
+  if (!measured.unstretched && !std::isfinite(most))
     return "numerics.auto: the error of cells was measured with membranes that resist stretching";
-  if (least < least_measured) return unknown("capillary number", least, least_measured, most_measured);
-  if (most > most_measured && std::isfinite(most))
-    return unknown("capillary number", most, least_measured, most_measured);
+  if (least < measured.least) return unknown("capillary number", least, measured.least, measured.most);
+  if (most > measured.most && std::isfinite(most))
+    return unknown("capillary number", most, measured.least, measured.most);
   return {};
 }
 
@@ -189,21 +198,21 @@ void spell_out_numerics(json::Document& document) {
 void put_draft_numerics(json::Document& document) {
   const Json root = document.root();
   const scene::SceneFields fields(document);
-  const bool in_space = root.at("domain").at("size").size() == 3;
+  const int dimension = static_cast<int>(root.at("domain").at("size").size());
   if (!root.at("domain").contains("nodes")) {
     const auto lattice =
-        scene::coarsest_lattice(fields.quantities("/domain/size", "m", scene::range::length, in_space ? 3 : 2));
+        scene::coarsest_lattice(fields.quantities("/domain/size", "m", scene::range::length, dimension));
     if (!lattice) {
       const std::string most = std::to_string(scene::most_coarse_rows);
-      fields.refuse(
-          "/domain/size",
-          in_space ? "the ratios of these sides are not those of whole numbers up to " + most +
-                         ", or want more nodes than can be computed (" + std::to_string(scene::most_nodes_of_block) +
-                         "), so that no lattice with the same spacing along all three can be chosen\n"
-                         "write sides with simple ratios, such as [\"50 um\", \"25 um\", \"25 um\"], or give nodes"
-                   : "the ratio of these sides is not one of whole numbers up to " + most +
-                         ", so that no lattice with the same spacing along both can be chosen\n"
-                         "write sides with a simple ratio, such as [\"50 um\", \"25 um\"], or give nodes");
+      const std::array wrong{
+          "the ratio of these sides is not one of whole numbers up to " + most +
+              ", so that no lattice with the same spacing along both can be chosen\n"
+              "write sides with a simple ratio, such as [\"50 um\", \"25 um\"], or give nodes",
+          "the ratios of these sides are not those of whole numbers up to " + most +
+              ", or want more nodes than can be computed (" + std::to_string(scene::most_nodes_of_block) +
+              "), so that no lattice with the same spacing along all three can be chosen\n"
+              "write sides with simple ratios, such as [\"50 um\", \"25 um\", \"25 um\"], or give nodes"};
+      fields.refuse("/domain/size", wrong[dimension - 2]);
     }
     // As fine as a lattice that might be chosen: a region of output must hold nodes.
     const int factor = std::max(1, 1024 / *std::max_element(lattice->begin(), lattice->end()));
@@ -212,9 +221,8 @@ void put_draft_numerics(json::Document& document) {
   const Json types = root.value("cell_types", Json::object());
   for (const auto& [name, type] : types.items()) {
     const std::string cell = json::child_pointer("/cell_types", name);
-    if (in_space && !type.contains("triangles") && !type.at("shape").contains("mesh"))
-      document.put(cell + "/triangles", 320, origin);
-    if (!in_space && !type.contains("segments")) document.put(cell + "/segments", 64, origin);
+    const auto& [key, but_of, count] = draft_pieces[dimension - 2];
+    if (!type.contains(key) && !type.at("shape").contains(but_of)) document.put(cell + "/" + key, count, origin);
   }
 }
 

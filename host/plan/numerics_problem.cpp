@@ -60,8 +60,8 @@ NumericsProblem::NumericsProblem(const scene::Scene& draft, const Json& written,
     const scene::CellType& type = scene_.cell_types[i];
     const bool fixed = std::holds_alternative<scene::MeshFile>(type.shape) ||
                        written_.at("cell_types").at(type.name).contains("triangles");
-    has_round_cells_ =
-        has_round_cells_ || (scene_.domain.dimension() == 2 && !std::holds_alternative<scene::Biconcave>(type.shape));
+    has_round_cells_ = has_round_cells_ || std::holds_alternative<scene::Circle>(type.shape) ||
+                       std::holds_alternative<scene::Ellipse>(type.shape);
     used_types_.push_back({&type, placed[i], resolved_radius(type.shape), fixed ? shape::node_count(type) : 0});
     const double ratio = type.interior_viscosity / scene_.fluid.viscosity;
     if (std::abs(std::log(ratio)) > std::abs(std::log(viscosity_ratio_))) viscosity_ratio_ = ratio;
@@ -93,15 +93,15 @@ NumericsProblem::NumericsProblem(const scene::Scene& draft, const Json& written,
   momentum_time_ = scene_.fluid.density * length * length / scene::viscosity_range(scene_.fluid).least;
 }
 
-/// In three dimensions the correction was measured with the sharp kernel.
+/// Corrected where errors were measured with the correction.
 MembraneCoupling NumericsProblem::chosen_coupling() const {
-  const bool in_space = scene_.domain.dimension() == 3;
+  const int by_dimension = scene_.domain.dimension() - 2;
   scene::Numerics chosen;
-  const std::string kernel = numerics_.value("kernel", in_space ? sharp_kernel : chosen.kernel);
-  const bool corrected =
-      bounds_.slip_correction && scene_.fluid.layers.empty() && (!in_space || kernel == sharp_kernel);
-  chosen.slip_correction = numerics_.value("slip_correction", corrected);
-  chosen.kernel = kernel;
+  chosen.kernel = numerics_.value("kernel", kernel_of_auto[by_dimension]);
+  chosen.slip_correction = true;
+  const bool known = measured_capillary[by_dimension][static_cast<int>(membrane_coupling(chosen))].known;
+  chosen.slip_correction =
+      numerics_.value("slip_correction", bounds_.slip_correction && scene_.fluid.layers.empty() && known);
   return membrane_coupling(chosen);
 }
 

@@ -94,7 +94,7 @@ class NumericsProblem {
   bool steady_ = false;  ///< asked for
   bool can_be_steady_ = false;
   MembraneCoupling coupling_ = MembraneCoupling::plain;
-  bool has_cells_ = false, has_round_cells_ = false;  ///< round: in two dimensions, and not biconcave
+  bool has_cells_ = false, has_round_cells_ = false;  ///< round: circles and ellipses
   struct UsedType {
     const scene::CellType* type;
     int cells;

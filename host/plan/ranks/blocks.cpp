@@ -1,6 +1,7 @@
 #include "blocks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <string>
 
@@ -18,7 +19,11 @@ namespace rouleau::plan {
 
 namespace {
 
-constexpr int least_width = 16, least_height = 4;  // smaller blocks are mostly border
+/// Sides of the smallest block: smaller ones are mostly border.
+std::vector<int> least_block(const scene::Domain& domain) {
+  constexpr std::array sides{16, 4, 4};
+  return {sides.begin(), sides.begin() + domain.dimension()};
+}
 
 /// Membrane nodes on the lattice. Of very many a part is enough.
 template <int D>
@@ -77,8 +82,8 @@ core::Decomposition<D> cut(const Plan& plan, int ranks) {
 }  // namespace
 
 int most_blocks(const Plan& plan) {
-  const int least_depth = plan.scene->domain.dimension() == 3 ? least_height : 1;
-  const double most = plan.scene->domain.node_count() / (least_width * least_height * least_depth);
+  double most = plan.scene->domain.node_count();
+  for (const int side : least_block(plan.scene->domain)) most /= side;
   return static_cast<int>(std::min(most, 1e9));
 }
 
@@ -105,16 +110,13 @@ Blocks make_blocks(const Plan& plan, int ranks) {
   const scene::Scene& scene = *plan.scene;
   const int most = most_blocks(plan);
   if (ranks < 1) throw Error(Cause::bad_input, std::to_string(ranks) + " ranks: there is at least one");
-  if (ranks > most) {
-    const std::string height = std::to_string(least_height);
+  if (ranks > most)
     throw Error(Cause::bad_input, scene.place("/domain/nodes"),
                 std::to_string(ranks) + " ranks are more than the " + std::to_string(most) + " blocks of " +
-                    std::to_string(least_width) + " x " + height +
-                    (scene.domain.dimension() == 3 ? " x " + height : "") + " nodes that the lattice has room for",
+                    scene::by_axes(least_block(scene.domain)) + " nodes that the lattice has room for",
                 {"take fewer ranks"});
-  }
-  if (scene.domain.dimension() == 3) return cut<3>(plan, ranks);
-  return cut<2>(plan, ranks);
+  return scene::in_dimension(scene.domain.dimension(),
+                             [&]<int D>(std::integral_constant<int, D>) -> Blocks { return cut<D>(plan, ranks); });
 }
 
 template <int D>

@@ -30,9 +30,9 @@ constexpr double of_each_cell = 600;  ///< of the scene: as it was read, where i
 /// ten thousand at most (observe::most_cells_remembered).
 constexpr double of_writer(double cells) { return 10e6 + 1200 * cells + 1300 * std::min(cells, 1e4); }
 /// Of a rank's own nodes and those of its ghosts, of which surfaces keep no lists. `cells`: as many have these nodes.
-template <int D>
-constexpr double of_known(double own, double ghosts, double cells) {
-  return D == 2 ? 250 * (own + ghosts) + 5000 * cells : 1200 * own + 250 * ghosts;
+constexpr double of_known(int dimension, double own, double ghosts, double cells) {
+  constexpr double of_own[2] = {250, 1200}, of_ghost[2] = {250, 250}, of_cell[2] = {5000, 0};
+  return of_own[dimension - 2] * own + of_ghost[dimension - 2] * ghosts + of_cell[dimension - 2] * cells;
 }
 }  // namespace memory
 
@@ -160,7 +160,7 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
   std::vector<int> owner, nodes;
   Pairs known;        // cells, and ranks that are told where they are
   Pairs spread, act;  // ranks that speak of forces and velocities, and of reactions
-  for_each_cell<D>(*plan.scene, scene::lattice_spacing(*plan.scene), [&](std::size_t c, const Cells<D>& cell) {
+  for_each_cell<D>(*plan.scene, scene::lattice_spacing(*plan.scene), [&](std::size_t c, const core::Cells<D>& cell) {
     const core::BoundingBox<D> box = core::box_of<D>(cell, 0);
     const int rank = Ghosts::owner_by_place(box, blocks);
     RankCost& own = ranks[rank];
@@ -201,7 +201,7 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
     const double bytes = nodes[c] * of_node + word;
     RankCost& own = ranks[owner[c]];
     own.position_bytes += bytes;
-    own.sharing_s += nodes[c] * cost_of_sharing(D).shown_s;
+    own.sharing_s += nodes[c] * cost_of_sharing[D - 2].shown_s;
     ranks[rank].received_bytes += bytes;
     ranks[rank].ghost_nodes += nodes[c];
   }
@@ -225,7 +225,7 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
     const double agreed = static_cast<double>(agreements) * 4 * word;
     rank.position_bytes += agreed;
     rank.received_bytes += agreed;
-    rank.ghosts_s = static_cast<double>(rank.ghost_nodes) * cost_of_sharing(D).ghost_s;
+    rank.ghosts_s = static_cast<double>(rank.ghost_nodes) * cost_of_sharing[D - 2].ghost_s;
     rank.sharing_s += rank.ghosts_s;
   }
 }
@@ -249,11 +249,11 @@ std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& b
     cost.memory_bytes = memory::of_process + lattice * nodes / all;
     if (plan.has_cells) {
       const double known = (own + ghosts) * cells / membrane_nodes(scene);
-      cost.memory_bytes += memory::of_known<D>(own, ghosts, known) + cells * memory::of_each_cell;
+      cost.memory_bytes += memory::of_known(D, own, ghosts, known) + cells * memory::of_each_cell;
     }
     if (rank == 0) cost.memory_bytes += memory::of_writer(cells);
-    cost.rows_s = (core::row_count(block) - nodes / blocks.domain(rank).size[0]) * cost_of_sharing(D).row_s;
-    cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing(D).number_s + cost.rows_s;
+    cost.rows_s = (core::row_count(block) - nodes / blocks.domain(rank).size[0]) * cost_of_sharing[D - 2].row_s;
+    cost.sharing_s += cost.lattice_bytes() / word * cost_of_sharing[D - 2].number_s + cost.rows_s;
     cost.step_s = step_cost(nodes, own, scene.numerics.precision, D, scheme);
     cost.membranes_s = cost.step_s - step_cost(nodes, 0, scene.numerics.precision, D, scheme);
   }

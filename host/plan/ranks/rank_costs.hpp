@@ -17,9 +17,7 @@ struct CostOfSharing {
   double shown_s;   ///< a node that is told to another rank
   double row_s;     ///< a row that blocks have more than the lattice: its beginning and its end
 };
-constexpr CostOfSharing cost_of_sharing(int dimension) {
-  return dimension == 2 ? CostOfSharing{5e-9, 25e-9, 10e-9, 40e-9} : CostOfSharing{2e-9, 65e-9, 23e-9, 40e-9};
-}
+inline constexpr CostOfSharing cost_of_sharing[2] = {{5e-9, 25e-9, 10e-9, 40e-9}, {2e-9, 65e-9, 23e-9, 40e-9}};
 
 /// Of one rank, with the cells where they begin. Messages and bytes are those that the rank sends in a step, the mean of
 /// two steps; bytes of reactions between cells of different ranks, a small part, are left out.
