@@ -107,7 +107,7 @@ double distance(const core::BoundingBox<D>& cell, const core::Box<D>& block) {
 
 /// Adds the cell that is the only one of `one`, moved.
 template <int D>
-void append(plan::Cells<D>& cells, const plan::Cells<D>& one, const std::array<double, D>& by) {
+void append(core::Cells<D>& cells, const core::Cells<D>& one, const std::array<double, D>& by) {
   core::CellRange range = one.cells.front();
   range.first = cells.node_count();
   cells.cells.push_back(range);
@@ -146,7 +146,7 @@ Window<D> window_around(const plan::Plan& plan, const core::Decomposition<D>& bl
 
   std::vector<core::BoundingBox<D>> boxes;
   double longest = 0;
-  plan::for_each_cell<D>(scene, spacing, [&](std::size_t, const plan::Cells<D>& cell) {
+  plan::for_each_cell<D>(scene, spacing, [&](std::size_t, const core::Cells<D>& cell) {
     boxes.push_back(core::box_of<D>(cell, 0));
     for (int k = 0; k < D; ++k) longest = std::max(longest, boxes.back().most[k] - boxes.back().least[k]);
   });
@@ -173,8 +173,8 @@ Window<D> window_around(const plan::Plan& plan, const core::Decomposition<D>& bl
   };
   double fastest = 0, here = 0, farthest = 0;
   int runner = -1;
-  plan::Cells<D> cells;
-  plan::for_each_cell<D>(scene, spacing, [&](std::size_t c, const plan::Cells<D>& cell) {
+  core::Cells<D> cells;
+  plan::for_each_cell<D>(scene, spacing, [&](std::size_t c, const core::Cells<D>& cell) {
     cells.types = cell.types;
     fastest = std::max(fastest, speed(boxes[c]));
     const auto by = into(box, lattice, boxes[c]);

@@ -21,7 +21,7 @@ struct Window {
   core::Decomposition<D> blocks;    ///< of the window
   int rank;                         ///< whose block is the scene's
   bool merged;                      ///< there would be very many others: one for each side, edge and corner
-  plan::Cells<D> cells;             ///< in their order
+  core::Cells<D> cells;             ///< in their order
   core::BasicSolverSetup<D> setup;  ///< of the first stage; the domain is the window in one piece
   /// Largest speed of the fluid at a cell of the scene. All ranks make their lists of what is near anew when any cell has
   /// gone some way, so that one cell of the window, far from the block, is moved to and fro at this speed; -1: those of the

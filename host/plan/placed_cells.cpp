@@ -2,10 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <limits>
 #include <numeric>
 #include <span>
 #include <string>
@@ -42,14 +39,18 @@ core::RestSurface rest_surface(const scene::CellType& type, double spacing) {
   return shape::rest_surface(surface, sphere != nullptr ? sphere->prestretch : 1.0);
 }
 
+void add_type(core::Membranes& cells, const scene::CellType& type, double spacing) {
+  cells.types.push_back(std::make_shared<const core::RestShape>(rest_shape(type, spacing)));
+}
+void add_type(core::Surfaces& cells, const scene::CellType& type, double spacing) {
+  cells.types.push_back(std::make_shared<const core::RestSurface>(rest_surface(type, spacing)));
+}
+
 /// The cell types of a scene on a lattice of this spacing, and no cell yet.
 template <int D>
-Cells<D> without_cells(const scene::Scene& scene, double spacing) {
-  Cells<D> cells;
-  for (const scene::CellType& type : scene.cell_types) {
-    if constexpr (D == 2) cells.types.push_back(std::make_shared<const core::RestShape>(rest_shape(type, spacing)));
-    if constexpr (D == 3) cells.types.push_back(std::make_shared<const core::RestSurface>(rest_surface(type, spacing)));
-  }
+core::Cells<D> without_cells(const scene::Scene& scene, double spacing) {
+  core::Cells<D> cells;
+  for (const scene::CellType& type : scene.cell_types) add_type(cells, type, spacing);
   return cells;
 }
 
@@ -64,197 +65,148 @@ void add_placed(core::Surfaces& surfaces, const scene::CellPlacement& cell, doub
 
 /// Room for the scene's cells, and none of them yet.
 template <int D>
-Cells<D> room_for_cells(const scene::Scene& scene, double spacing) {
-  Cells<D> cells = without_cells<D>(scene, spacing);
+core::Cells<D> room_for_cells(const scene::Scene& scene, double spacing) {
+  core::Cells<D> cells = without_cells<D>(scene, spacing);
   cells.reserve(scene.cells.size(), static_cast<std::size_t>(membrane_nodes(scene)), D);
   return cells;
 }
 
 /// Unchecked.
 template <int D>
-Cells<D> all_cells(const scene::Scene& scene, double spacing) {
+core::Cells<D> all_cells(const scene::Scene& scene, double spacing) {
   require_memory(membrane_memory(scene), "placing the cells");
-  Cells<D> cells = room_for_cells<D>(scene, spacing);
+  core::Cells<D> cells = room_for_cells<D>(scene, spacing);
   for (const scene::CellPlacement& cell : scene.cells) add_placed(cells, cell, spacing);
   return cells;
 }
 
-/// Refuses outlines that stick through walls, are longer than a period, or cross themselves or each other.
-class OutlineChecker {
+/// There are tubes in three dimensions alone.
+double farthest_from_axis(const core::Membranes&, int, const core::Domain<2>&) { return 0; }
+
+/// Refuses cells that stick through walls, are longer than a period, or cross each other: outlines themselves, too, and
+/// of surfaces those of which one holds a node of the other.
+template <int D>
+class PlacementChecker {
  public:
-  /// `cells`: which of the scene's cells the membranes are; empty: all of them.
-  OutlineChecker(const scene::Scene& scene, const core::Membranes& membranes, double spacing,
-                 std::span<const int> cells = {})
-      : scene_(scene), membranes_(membranes), spacing_(spacing), cells_(cells), domain_(scene::lattice_domain(scene)) {}
+  /// `numbers`: which of the scene's cells these are; empty: all of them.
+  PlacementChecker(const scene::Scene& scene, const core::Cells<D>& cells, double spacing,
+                   std::span<const int> numbers = {})
+      : scene_(scene),
+        cells_(cells),
+        spacing_(spacing),
+        numbers_(numbers),
+        domain_(scene::lattice_domain<D>(scene)),
+        boxes_(core::boxes_of<D>(cells)) {}
 
   void check() const {
-    for (std::size_t i = 0; i < membranes_.cells.size(); ++i) check_fits(i);
-    if (const auto crossing = core::find_crossing(membranes_, domain_)) report(*crossing);
+    for (int c = 0; c < cells_.cell_count(); ++c) check_fits(c);
+    check_apart(cells_);
   }
 
  private:
-  [[noreturn]] void refuse(std::size_t cell, const std::string& problem) const {
-    const std::string& pointer = placement(cell).pointer;
-    const Place place = scene_.document ? scene_.place(pointer) : Place{"", pointer};
-    throw Error(Cause::bad_input, place, problem);
+  [[nodiscard]] const scene::CellPlacement& placement(int cell) const {
+    return scene_.cells[numbers_.empty() ? cell : numbers_[cell]];
   }
-  [[nodiscard]] std::string micrometres(double spacings) const {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g um", spacings * spacing_ * 1e6);
-    return text;
-  }
-  [[nodiscard]] int number_of(std::size_t cell) const { return cells_.empty() ? static_cast<int>(cell) : cells_[cell]; }
-  [[nodiscard]] const scene::CellPlacement& placement(std::size_t cell) const { return scene_.cells[number_of(cell)]; }
-  [[nodiscard]] std::string name(std::size_t cell) const {
-    return "cell " + std::to_string(number_of(cell)) + " (" + scene::origin_of(placement(cell)) + ")";
-  }
-
-  void check_fits(std::size_t cell) const {
-    const core::BoundingBox<2> extent = core::box_of<2>(membranes_, membranes_.cells[cell]);
-    const auto who = [&] { return name(cell); };
-    const double width = extent.most[0] - extent.least[0], height = extent.most[1] - extent.least[1];
-    if (!(width < domain_.period(0))) {
-      refuse(cell, who() + " is " + micrometres(width) + " wide, more than the periodic length of the domain, " +
-                       micrometres(domain_.period(0)) + "; make the domain longer.");
-    }
-    if (domain_.periodic[1]) {
-      if (!(height < domain_.period(1))) {
-        refuse(cell, who() + " is " + micrometres(height) + " high, more than the periodic height of the domain, " +
-                         micrometres(domain_.period(1)) + "; make the domain higher.");
-      }
-      return;
-    }
-    const double below = -0.5 - extent.least[1], above = extent.most[1] - (scene_.domain.nodes[1] - 0.5);
-    if (!(below < 0)) stick_out(cell, "lower", below);
-    if (!(above < 0)) stick_out(cell, "upper", above);
-  }
-  [[noreturn]] void stick_out(std::size_t cell, const char* wall, double amount) const {
-    refuse(cell, name(cell) + " sticks through the " + wall + " wall by " + micrometres(amount) +
-                     "; move it away from the wall.");
-  }
-
-  [[noreturn]] void report(const core::Crossing& crossing) const {
-    const auto cell = static_cast<std::size_t>(crossing.cell);
-    const bool own = crossing.cell == crossing.other;
-    if (own && crossing.shift == core::ImageShift{})
-      refuse(cell, name(crossing.cell) + " crosses itself; change its shape.");
-    const double depth = overlap(crossing);
-    const std::string amount = depth > 0 ? "overlap by " + micrometres(depth) : "cross";
-    if (own) {
-      refuse(cell, name(crossing.cell) + " and its own periodic image " + amount + "; make the domain longer.");
-    }
-    const bool image = !(crossing.shift == core::ImageShift{});
-    refuse(cell, name(crossing.cell) + " and " + (image ? "a periodic image of " : "") + name(crossing.other) + " " +
-                     amount + "; move them apart.");
-  }
-  /// Largest depth of a node of one cell inside the other.
-  [[nodiscard]] double overlap(const core::Crossing& crossing) const {
-    const core::CellRange& a = membranes_.cells[crossing.cell];
-    const core::CellRange& b = membranes_.cells[crossing.other];
-    const Eigen::Vector2d move(crossing.shift.x * domain_.period(0), crossing.shift.y * domain_.period(1));
-    double depth = 0;
-    for (int i = a.first; i < a.end(); ++i) depth = std::max(depth, core::depth_inside(membranes_, b, node(i) - move));
-    for (int i = b.first; i < b.end(); ++i) depth = std::max(depth, core::depth_inside(membranes_, a, node(i) + move));
-    return depth;
-  }
-  [[nodiscard]] Eigen::Vector2d node(int i) const { return {membranes_.position[0][i], membranes_.position[1][i]}; }
-
-  const scene::Scene& scene_;
-  const core::Membranes& membranes_;
-  double spacing_;
-  std::span<const int> cells_;
-  core::Domain<2> domain_;
-};
-
-/// Refuses surfaces that stick through walls, are longer than a period, or overlap.
-class SurfaceChecker {
- public:
-  SurfaceChecker(const scene::Scene& scene, const core::Surfaces& surfaces, double spacing)
-      : scene_(scene), surfaces_(surfaces), spacing_(spacing), domain_(scene::lattice_domain<3>(scene)) {
-    for (int c = 0; c < surfaces.cell_count(); ++c) {
-      Eigen::AlignedBox3d& box = boxes_.emplace_back();
-      for (int i = 0; i < surfaces.cells[c].count; ++i) box.extend(surfaces.nodes(c)[i]);
-    }
-  }
-
-  void check() const {
-    for (int c = 0; c < surfaces_.cell_count(); ++c) check_fits(c);
-    std::vector<core::BoundingBox<3>> boxes;
-    boxes.reserve(surfaces_.cells.size());
-    for (const Eigen::AlignedBox3d& box : boxes_)
-      boxes.push_back({{box.min().x(), box.min().y(), box.min().z()}, {box.max().x(), box.max().y(), box.max().z()}});
-    const core::CellGrid<3> grid(boxes, 0, domain_);
-    std::vector<int> near;
-    for (int c = 0; c < surfaces_.cell_count(); ++c) {
-      grid.find(c, near);
-      std::sort(near.begin(), near.end());
-      for (const int other : near) {
-        if (other < c) check_apart(c, other);
-      }
-    }
-  }
-
- private:
-  static constexpr std::array axes{"x", "y", "z"};
-
   [[noreturn]] void refuse(int cell, const std::string& problem) const {
-    throw Error(Cause::bad_input, scene_.place(scene_.cells[cell].pointer), problem);
+    throw Error(Cause::bad_input, scene_.place(placement(cell).pointer), name(cell) + problem);
   }
   [[nodiscard]] std::string name(int cell) const {
-    return "cell " + std::to_string(cell) + " (" + scene::origin_of(scene_.cells[cell]) + ")";
+    return "cell " + std::to_string(numbers_.empty() ? cell : numbers_[cell]) + " (" +
+           scene::origin_of(placement(cell)) + ")";
   }
   [[nodiscard]] std::string micrometres(double spacings) const { return number(spacings * spacing_ * 1e6, 3) + " um"; }
 
   void check_fits(int cell) const {
-    for (int k = 0; k < 3; ++k) {
-      const double length = boxes_[cell].sizes()[k];
+    const core::BoundingBox<D>& box = boxes_[cell];
+    for (int k = 0; k < D; ++k) {
+      const double length = box.most[k] - box.least[k];
       if (domain_.periodic[k]) {
         if (length < domain_.period(k)) continue;
-        refuse(cell, name(cell) + " is " + micrometres(length) + " long along " + axes[k] +
+        refuse(cell, " is " + micrometres(length) + " long along " + scene::axis_names[k] +
                          ", more than the periodic length of the domain, " + micrometres(domain_.period(k)) +
                          "; make the domain longer.");
       }
-      const double beyond = std::max(-0.5 - boxes_[cell].min()[k], boxes_[cell].max()[k] - (domain_.size[k] - 0.5));
-      if (beyond < 0) continue;
-      refuse(cell, name(cell) + " sticks through a wall across " + axes[k] + " by " + micrometres(beyond) +
+      const double below = -0.5 - box.least[k], above = box.most[k] - (domain_.size[k] - 0.5);
+      if (below < 0 && above < 0) continue;
+      refuse(cell, std::string(" sticks through the ") + (below < 0 ? "upper" : "lower") + " wall across " +
+                       scene::axis_names[k] + " by " + micrometres(below < 0 ? above : below) +
                        "; move it away from the wall.");
     }
     if (!scene_.domain.tube_radius) return;
-    const double beyond = core::farthest_from_axis(surfaces_, cell, domain_) - *scene_.domain.tube_radius / spacing_;
+    const double beyond = farthest_from_axis(cells_, cell, domain_) - *scene_.domain.tube_radius / spacing_;
     if (beyond < 0) return;
-    refuse(cell, name(cell) + " sticks through the wall of the tube by " + micrometres(beyond) +
+    refuse(cell, " sticks through the wall of the tube by " + micrometres(beyond) +
                      "; move it towards the axis, or make the tube wider.");
   }
 
+  void check_apart(const core::Membranes& membranes) const {
+    const auto crossing = core::find_crossing(membranes, domain_);
+    if (!crossing) return;
+    const bool own = crossing->cell == crossing->other, image = crossing->shift != core::ImageShift{};
+    if (own && !image) refuse(crossing->cell, " crosses itself; change its shape.");
+    const double depth = overlap(membranes, *crossing);
+    const std::string amount = depth > 0 ? "overlap by " + micrometres(depth) : "cross";
+    if (own) refuse(crossing->cell, " and its own periodic image " + amount + "; make the domain longer.");
+    refuse(crossing->cell, std::string(" and ") + (image ? "a periodic image of " : "") + name(crossing->other) + " " +
+                               amount + "; move them apart.");
+  }
+  /// Largest depth of a node of one cell inside the other.
+  [[nodiscard]] double overlap(const core::Membranes& membranes, const core::Crossing& crossing) const {
+    const core::CellRange& a = membranes.cells[crossing.cell];
+    const core::CellRange& b = membranes.cells[crossing.other];
+    const core::Vec<2> move = core::moved_by(crossing.shift, domain_);
+    const auto node = [&](int i) { return core::Vec<2>(membranes.position[0][i], membranes.position[1][i]); };
+    double depth = 0;
+    for (int i = a.first; i < a.end(); ++i) depth = std::max(depth, core::depth_inside(membranes, b, node(i) - move));
+    for (int i = b.first; i < b.end(); ++i) depth = std::max(depth, core::depth_inside(membranes, a, node(i) + move));
+    return depth;
+  }
+
+  void check_apart(const core::Surfaces& surfaces) const {
+    const core::CellGrid<D> grid(boxes_, 0, domain_);
+    std::vector<int> near;
+    for (int c = 0; c < surfaces.cell_count(); ++c) {
+      grid.find(c, near);
+      std::sort(near.begin(), near.end());
+      for (const int other : near) {
+        if (other < c) check_apart(surfaces, c, other);
+      }
+    }
+  }
   /// Of all images of the other cell the one that is nearest lies nearest along each axis.
-  void check_apart(int cell, int other) const {
+  void check_apart(const core::Surfaces& surfaces, int cell, int other) const {
+    const Eigen::AlignedBox3d own = box_of(cell), of_other = box_of(other);
     core::Vec<3> shift = core::Vec<3>::Zero();
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < D; ++k) {
       if (!domain_.periodic[k]) continue;
-      const double apart = boxes_[cell].center()[k] - boxes_[other].center()[k];
+      const double apart = own.center()[k] - of_other.center()[k];
       shift[k] = std::round(apart / domain_.period(k)) * domain_.period(k);
     }
-    const Eigen::AlignedBox3d moved(boxes_[other].min() + shift, boxes_[other].max() + shift);
-    if (!boxes_[cell].intersects(moved)) return;
-    if (!holds_node_of(cell, other, shift) && !holds_node_of(other, cell, -shift)) return;
-    refuse(cell, name(cell) + " and " + (shift.isZero() ? "" : "a periodic image of ") + name(other) +
+    if (!own.intersects(Eigen::AlignedBox3d(of_other.min() + shift, of_other.max() + shift))) return;
+    if (!holds_node_of(surfaces, cell, other, shift) && !holds_node_of(surfaces, other, cell, -shift)) return;
+    refuse(cell, std::string(" and ") + (shift.isZero() ? "" : "a periodic image of ") + name(other) +
                      " overlap; move them apart.");
   }
+  [[nodiscard]] Eigen::AlignedBox3d box_of(int cell) const {
+    return {core::Vec<3>(boxes_[cell].least.data()), core::Vec<3>(boxes_[cell].most.data())};
+  }
   /// Whether a node of `other`, moved by `shift`, lies inside `cell`.
-  [[nodiscard]] bool holds_node_of(int cell, int other, const core::Vec<3>& shift) const {
-    for (int i = 0; i < surfaces_.cells[other].count; ++i) {
-      const core::Vec<3> place = surfaces_.nodes(other)[i] + shift;
-      if (boxes_[cell].contains(place) && core::encloses(surfaces_.type_of(cell).mesh, surfaces_.nodes(cell), place))
-        return true;
+  [[nodiscard]] bool holds_node_of(const core::Surfaces& surfaces, int cell, int other,
+                                   const core::Vec<3>& shift) const {
+    const Eigen::AlignedBox3d box = box_of(cell);
+    for (int i = 0; i < surfaces.cells[other].count; ++i) {
+      const core::Vec<3> place = surfaces.nodes(other)[i] + shift;
+      if (box.contains(place) && core::encloses(surfaces.type_of(cell).mesh, surfaces.nodes(cell), place)) return true;
     }
     return false;
   }
 
   const scene::Scene& scene_;
-  const core::Surfaces& surfaces_;
+  const core::Cells<D>& cells_;
   double spacing_;
-  core::Domain<3> domain_;
-  std::vector<Eigen::AlignedBox3d> boxes_;
+  std::span<const int> numbers_;
+  core::Domain<D> domain_;
+  std::vector<core::BoundingBox<D>> boxes_;
 };
 
 /// Cells that cover more than the whole domain overlap, and that is known before any of them is placed.
@@ -319,31 +271,27 @@ void try_in_strips(const scene::Scene& scene, double spacing, std::size_t of_str
     std::sort(cells.begin(), cells.end());
     core::Membranes membranes = none;
     for (const int c : cells) add_placed(membranes, scene.cells[c], spacing);
-    OutlineChecker(scene, membranes, spacing, cells).check();
+    PlacementChecker<2>(scene, membranes, spacing, cells).check();
   }
 }
 
 }  // namespace
 
-core::Membranes make_membranes(const scene::Scene& scene, double spacing) {
+template <int D>
+core::Cells<D> make_cells(const scene::Scene& scene, double spacing) {
   require_room(scene);
   require_distance(scene);
-  core::Membranes membranes = all_cells<2>(scene, spacing);
-  OutlineChecker(scene, membranes, spacing).check();
-  return membranes;
+  core::Cells<D> cells = all_cells<D>(scene, spacing);
+  PlacementChecker<D>(scene, cells, spacing).check();
+  return cells;
 }
-
-core::Surfaces make_surfaces(const scene::Scene& scene, double spacing) {
-  require_room(scene);
-  core::Surfaces surfaces = all_cells<3>(scene, spacing);
-  SurfaceChecker(scene, surfaces, spacing).check();
-  return surfaces;
-}
+template core::Membranes make_cells<2>(const scene::Scene&, double);
+template core::Surfaces make_cells<3>(const scene::Scene&, double);
 
 template <int D>
 void for_each_cell(const scene::Scene& scene, double spacing,
-                   const std::function<void(std::size_t, const Cells<D>&)>& function) {
-  Cells<D> cell = without_cells<D>(scene, spacing);
+                   const std::function<void(std::size_t, const core::Cells<D>&)>& function) {
+  core::Cells<D> cell = without_cells<D>(scene, spacing);
   for (std::size_t c = 0; c < scene.cells.size(); ++c) {
     add_placed(cell, scene.cells[c], spacing);
     function(c, cell);
@@ -356,10 +304,10 @@ template void for_each_cell<3>(const scene::Scene&, double,
                                const std::function<void(std::size_t, const core::Surfaces&)>&);
 
 template <int D>
-Cells<D> make_known_cells(const scene::Scene& scene, const std::function<bool(int)>& known) {
+core::Cells<D> make_known_cells(const scene::Scene& scene, const std::function<bool(int)>& known) {
   constexpr int at_once = 1 << 16;  // nodes whose memory is given back together
   const double spacing = scene::lattice_spacing(scene);
-  Cells<D> cells = room_for_cells<D>(scene, spacing);
+  core::Cells<D> cells = room_for_cells<D>(scene, spacing);
   std::vector<Range> unknown;
   int nodes = 0;
   for (std::size_t c = 0; c < scene.cells.size(); ++c) {

@@ -336,7 +336,7 @@ TEST_CASE("a law that acts and gives no energy leaves the total unknown, and say
                                      "parameters": {"depth": 5.2e-8}}])"});
   const Catalog catalog({copy.path() / "plugins"});
   const Plan plan = make_plan(scene, catalog);
-  Membranes membranes = make_membranes(scene, lattice_spacing(scene));
+  Membranes membranes = make_cells<2>(scene, lattice_spacing(scene));
   Solver<double> solver(make_solver_setup(plan, 0), membranes);
   solver.compute_forces();
   solver.fluid().settle();

@@ -17,7 +17,7 @@ struct SolverBench {
   explicit SolverBench(const std::string& file, const std::vector<std::string>& overrides = {})
       : scene(read_scene(file, overrides)),
         plan(make_plan(scene, plugins())),
-        membranes(make_membranes(scene, lattice_spacing(scene))) {}
+        membranes(make_cells<2>(scene, lattice_spacing(scene))) {}
 
   /// To be called once the membranes are as they should start.
   void start() { solver = std::make_unique<Solver<double>>(make_solver_setup(plan, 0), membranes); }

@@ -59,7 +59,7 @@ inline Scene biconcave_scene(const std::vector<Placed>& places, core::Domain<2> 
 /// The same cells, wherever they are and whatever they cross.
 inline Membranes biconcave_cells(const std::vector<Placed>& places, int segments = 100) {
   Membranes all;
-  all.types = plan::make_membranes(biconcave_scene({{0, 1000, 0}}, periodic_box(1000000), 2000, segments), 1.0).types;
+  all.types = plan::make_cells<2>(biconcave_scene({{0, 1000, 0}}, periodic_box(1000000), 2000, segments), 1.0).types;
   all.types.resize(4, all.types.front());  // for cells that are given another type
   for (const Placed& place : places) add_cell(all, 0, place.x, place.y, place.angle);
   return all;

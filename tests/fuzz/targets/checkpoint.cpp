@@ -19,7 +19,7 @@ struct Run {
   Run()
       : scene(plan::read_scene(ROULEAU_FUZZ_SCENES "/checkpoint.json")),
         plan(plan::make_plan(scene, fuzz::shipped_catalog())) {}
-  [[nodiscard]] core::Membranes membranes() const { return plan::make_membranes(scene, scene::lattice_spacing(scene)); }
+  [[nodiscard]] core::Membranes membranes() const { return plan::make_cells<2>(scene, scene::lattice_spacing(scene)); }
 
   scene::Scene scene;
   plan::Plan plan;

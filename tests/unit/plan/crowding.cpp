@@ -69,7 +69,7 @@ TEST_CASE("a million cells in a row on top of each other are refused before memo
   for (int i = 0; i < 1'000'000; ++i) {
     scene.cells.push_back({0, {1e-6 + 1e-12 * i, 5e-6}, 0, "/cells/0"});
   }
-  CHECK_THROWS_WITH(plan::make_membranes(scene, 1e-7),
+  CHECK_THROWS_WITH(plan::make_cells<2>(scene, 1e-7),
                     Contains("(/cells/0) overlap: their centres are 1e-06 um apart; move them apart."));
 }
 
@@ -92,7 +92,7 @@ TEST_CASE("cells that are tried strip by strip are refused where all at once are
     std::uniform_real_distribution<double> x(-20e-6, 40e-6), y(periodic ? -10e-6 : 0.3e-6, periodic ? 20e-6 : 9.7e-6);
     for (int i = 0; i < 9; ++i)
       scene.cells.push_back({static_cast<int>(random() % 2), {x(random), y(random)}, 0, "/cells/0"});
-    const std::string at_once = says([&] { plan::make_membranes(scene, 1e-7); });
+    const std::string at_once = says([&] { plan::make_cells<2>(scene, 1e-7); });
     for (const std::size_t of_strip : {1, 2, 5}) {
       const std::string in_strips = says([&] { plan::try_cells(scene, of_strip); });
       REQUIRE(in_strips.empty() == at_once.empty());

@@ -40,7 +40,7 @@ std::vector<double> count_bytes(const plan::Plan& plan, const core::Decompositio
   test::on_all_ranks(blocks, [&](const core::Ranks<dimension>& all) {
     Counting transport(all.transport);
     const core::Ranks<dimension> own{&blocks, &transport};
-    auto cells = plan.has_cells ? plan::make_cells<dimension>(*plan.scene) : plan::Cells<dimension>{};
+    auto cells = plan.has_cells ? plan::make_cells<dimension>(*plan.scene) : core::Cells<dimension>{};
     auto setup = plan::make_solver_setup<dimension>(plan, 0);
     setup.domain = blocks.domain(transport.rank());
     core::Solver<T, Set> solver(std::move(setup), cells, own);

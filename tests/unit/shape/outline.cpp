@@ -115,7 +115,7 @@ TEST_CASE("a scene's cells lie in lattice units half a spacing from the domain's
   scene.domain.size = {256 * spacing, 128 * spacing};
   scene.cell_types.push_back({"ring", Circle{2e-6, 1.25}, 64, 1e-3, {}});
   scene.cells.push_back({0, {10e-6, 8e-6}, 0.5, "/cells/0"});
-  const Membranes m = make_membranes(scene, spacing);
+  const Membranes m = make_cells<2>(scene, spacing);
   CHECK(centroid(m, m.cells[0]).x() == Approx(10e-6 / spacing - 0.5));
   CHECK(centroid(m, m.cells[0]).y() == Approx(8e-6 / spacing - 0.5));
   CHECK(marker_angle(m, m.cells[0]) == Approx(0.5));
@@ -126,7 +126,7 @@ TEST_CASE("a scene's cells lie in lattice units half a spacing from the domain's
 TEST_CASE("cells that cannot be placed are refused with both places and the amount") {
   const auto refused = [](const Scene& scene) {
     try {
-      make_membranes(scene, 1e-6);
+      make_cells<2>(scene, 1e-6);
     } catch (const Error& error) {
       CHECK(error.cause() == Cause::bad_input);
       return std::string(error.what());
@@ -145,12 +145,12 @@ TEST_CASE("cells that cannot be placed are refused with both places and the amou
              Contains("/cells/0") && Contains("/cells/1") && Contains("overlap by 5 um"));
   CHECK_THAT(refused(scene_of({{10, 50}, {241, 50}}, periodic_box(256), 100)),
              Contains("periodic image") && Contains("um"));
-  CHECK_THAT(refused(scene_of({{50, 17}}, periodic_box(256), 100)), Contains("lower wall by 2.5 um"));
-  CHECK_THAT(refused(scene_of({{50, 82}}, periodic_box(256), 100)), Contains("upper wall by 2.5 um"));
+  CHECK_THAT(refused(scene_of({{50, 17}}, periodic_box(256), 100)), Contains("lower wall across y by 2.5 um"));
+  CHECK_THAT(refused(scene_of({{50, 82}}, periodic_box(256), 100)), Contains("upper wall across y by 2.5 um"));
   CHECK(refused(scene_of({{50, 17}}, periodic_box(256, 100), 100)) == "accepted");
   CHECK_THAT(refused(scene_of({{50, 10}, {50, 85}}, periodic_box(256, 100), 100)), Contains("periodic image"));
   CHECK_THAT(refused(scene_of({{50, 50}}, periodic_box(39), 100)), Contains("periodic length"));
-  CHECK_THAT(refused(scene_of({{50, 50}}, periodic_box(256, 39), 39)), Contains("periodic height"));
+  CHECK_THAT(refused(scene_of({{50, 50}}, periodic_box(256, 39), 39)), Contains("long along y"));
   Scene inside = scene_of({{50, 50}, {50, 50}}, periodic_box(256), 100);
   inside.cell_types.push_back({"small", Circle{5e-6, 1.0}, 30, 1.0, {}});
   inside.cells[0].type = 1;

@@ -103,7 +103,7 @@ TEST_CASE("packed cells keep their gap from each other, from images and from wal
   Packed packed(256, 160, periodic);
   packed.hematocrit(0, share, 7, gap).run();
   REQUIRE_FALSE(packed.shortfall);
-  CHECK(make_membranes(packed.scene, spacing).cells.size() == packed.scene.cells.size());
+  CHECK(make_cells<2>(packed.scene, spacing).cells.size() == packed.scene.cells.size());
   // Outlines of the packing were rounded to 2^-24 of a radius, and the gap widened by more than that.
   CHECK(smallest_gap_of_all(packed.scene) >= gap);
   double enclosed = 0, wall = 1;
@@ -185,7 +185,7 @@ TEST_CASE("other cells are obstacles and several packings share the room") {
   packed.count(0, 20, 1, 0.2e-6).count(1, 15, 2, 0.4e-6).run();
   REQUIRE_FALSE(packed.shortfall);
   CHECK(packed.scene.cells[0].center.x() == 20 * um);
-  CHECK_NOTHROW(make_membranes(packed.scene, spacing));
+  CHECK_NOTHROW(make_cells<2>(packed.scene, spacing));
   // The first obstacle and the first packing alone keep the smaller gap.
   CHECK(smallest_gap_of_all(packed.scene) >= 0.2e-6);
   Scene circles = packed.scene;

@@ -141,7 +141,7 @@ TEST_CASE("cells packed in space keep their gap from each other, from images and
   Packed packed({50, 44, 40}, periodic_y, periodic_z);
   packed.hematocrit(0, share, 7, gap).run();
   REQUIRE_FALSE(packed.shortfall);
-  CHECK(make_surfaces(packed.scene, spacing).cell_count() == static_cast<int>(packed.scene.cells.size()));
+  CHECK(make_cells<3>(packed.scene, spacing).cell_count() == static_cast<int>(packed.scene.cells.size()));
   CHECK(smallest_gap_of_all(packed.scene, 2 * gap) >= gap);
   const Domain& domain = packed.scene.domain;
   double wall_y = 1, wall_z = 1;
@@ -224,7 +224,7 @@ TEST_CASE("other cells are obstacles in space and several packings share the roo
   packed.count(0, 12, 1, 0.2e-6).count(1, 10, 2, 0.4e-6).count(2, 8, 3, 0.2e-6).run();
   REQUIRE_FALSE(packed.shortfall);
   CHECK(packed.scene.cells[0].center.x() == 12 * um);
-  CHECK_NOTHROW(make_surfaces(packed.scene, spacing));
+  CHECK_NOTHROW(make_cells<3>(packed.scene, spacing));
   CHECK(smallest_gap_of_all(packed.scene, 0.4e-6) >= 0.2e-6);
   Scene spheres = packed.scene;
   std::erase_if(spheres.cells, [](const CellPlacement& cell) { return cell.type != 1; });
@@ -247,7 +247,7 @@ TEST_CASE("no cell is packed into a larger one, nor around a smaller one", "[man
   }
   around.count(0, 30, 4, 0.1e-6).run();
   REQUIRE_FALSE(around.shortfall);
-  CHECK_NOTHROW(make_surfaces(around.scene, spacing));
+  CHECK_NOTHROW(make_cells<3>(around.scene, spacing));
 }
 
 TEST_CASE("rigid surfaces keep the gap that is asked for, and hardly more") {
@@ -313,7 +313,7 @@ TEST_CASE("cells are packed into a tube, whose volume the hematocrit counts") {
   const double cell = enclosed_by(packed.scene.cell_types[0]);
   CHECK(std::abs(static_cast<double>(packed.scene.cells.size()) * cell -
                  0.2 * std::numbers::pi * 100 * 20 * um * um * um) <= 0.5 * cell * (1 + 1e-6));
-  CHECK(make_surfaces(packed.scene, spacing).cell_count() == static_cast<int>(packed.scene.cells.size()));
+  CHECK(make_cells<3>(packed.scene, spacing).cell_count() == static_cast<int>(packed.scene.cells.size()));
   CHECK(smallest_gap_of_all(packed.scene, 0.6e-6) >= 0.3e-6);
   double farthest = 0;
   for (const Placed& placed : placed_cells(packed.scene))
