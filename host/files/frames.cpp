@@ -260,8 +260,7 @@ observe::OutlineSnapshot FrameReader::surfaces(int frame) const {
   if (!file_.has(group)) return outlines;
   const auto points = file_.read(group + "/points");
   const bool in_space = file_.has(group + "/triangles");
-  const std::size_t components = in_space ? 3 : 2;
-  const std::size_t count = points.size() / components;
+  const std::size_t components = in_space ? 3 : 2, count = points.size() / components;
   const auto nodes = static_cast<double>(count);
   double before = -1;
   for (const double first : file_.read(group + "/first")) {
@@ -273,9 +272,8 @@ observe::OutlineSnapshot FrameReader::surfaces(int frame) const {
     outlines.first.push_back(static_cast<int>(before = first));
   }
   for (std::size_t i = 0; i + components <= points.size(); i += components) {
-    outlines.x.push_back(points[i]);
-    outlines.y.push_back(points[i + 1]);
-    if (in_space) outlines.z.push_back(points[i + 2]);
+    std::vector<double>* const along[] = {&outlines.x, &outlines.y, &outlines.z};
+    for (std::size_t axis = 0; axis < components; ++axis) along[axis]->push_back(points[i + axis]);
   }
   outlines.tension = file_.read(group + "/tension");
   if (outlines.tension.size() != outlines.x.size())

@@ -67,17 +67,18 @@ std::string fields(const FrameRecord& frame, const std::string& group, const Fie
   // In two dimensions one layer of a 3-D mesh: ParaView lays a 2DCoRectMesh into the y-z plane, across the membranes.
   // Slowest index first.
   const bool space = grid.nodes.size() == 3;
-  const std::string shape = (space ? std::to_string(grid.nodes[2]) : "1") + " " + std::to_string(grid.nodes[1]) + " " +
-                            std::to_string(grid.nodes[0]);
-  const auto triple = [](double z, double y, double x) {
-    return "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">" + to_text(z) + " " +
-           to_text(y) + " " + to_text(x) + "</DataItem>";
+  std::vector<int> nodes = grid.nodes;
+  nodes.resize(3, 1);
+  const std::string shape = std::to_string(nodes[2]) + " " + std::to_string(nodes[1]) + " " + std::to_string(nodes[0]);
+  const auto triple = [](std::vector<double> along, double rest) {
+    along.resize(3, rest);
+    return "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">" + to_text(along[2]) + " " +
+           to_text(along[1]) + " " + to_text(along[0]) + "</DataItem>";
   };
   std::string text = begin_grid("fields", frame.time);
   text += "        <Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"" + shape + "\"/>\n";
-  text += "        <Geometry GeometryType=\"ORIGIN_DXDYDZ\">" +
-          triple(space ? grid.origin[2] : 0, grid.origin[1], grid.origin[0]) +
-          triple(space ? grid.spacing[2] : grid.spacing[0], grid.spacing[1], grid.spacing[0]) + "</Geometry>\n";
+  text += "        <Geometry GeometryType=\"ORIGIN_DXDYDZ\">" + triple(grid.origin, 0) +
+          triple(grid.spacing, grid.spacing[0]) + "</Geometry>\n";
   for (const auto& name : frame.fields) {
     const bool vector = name == "velocity" || (name == "vorticity" && space);
     text += attribute(shown_name(name), vector ? "Vector" : "Scalar",

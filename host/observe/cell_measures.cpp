@@ -86,8 +86,6 @@ CellMeasures measure(const core::Surfaces& surfaces, int cell, const core::Domai
                         .deformation = plane.deformation,
                         .long_axis = long_axis(plane.angle, plane.deformation),
                         .marker = std::atan2(arm.y(), arm.x()),
-                        .area = std::nan(""),
-                        .perimeter = std::nan(""),
                         .wall_gap = wall_gap(surfaces, cell, domain, tube_radius),
                         .stretch = core::stretch_range(surfaces, cell),
                         .z = ellipsoid.center.z(),

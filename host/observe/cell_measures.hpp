@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/membrane/geometry.hpp"
 #include "core/surface/surfaces.hpp"
@@ -13,15 +14,15 @@ namespace rouleau::observe {
 /// Lattice units; copied bit by bit from rank to rank.
 struct CellMeasures {
   int cell;
-  double x, y;             ///< centroid
-  double deformation;      ///< (L - B) / (L + B)
-  double long_axis;        ///< angle against x of the axis L, rad, modulo pi; NaN: the cell is round
-  double marker;           ///< angle of a node about the centroid, rad, modulo 2 pi
-  double area, perimeter;  ///< NaN in three dimensions
-  double wall_gap;         ///< NaN without walls
-  double gap = 0;          ///< to the nearest other cell, which others than the cell are asked for
+  double x, y;         ///< centroid
+  double deformation;  ///< (L - B) / (L + B)
+  double long_axis;    ///< angle against x of the axis L, rad, modulo pi; NaN: the cell is round
+  double marker;       ///< angle of a node about the centroid, rad, modulo 2 pi
+  std::optional<double> area = {}, perimeter = {};  ///< of an outline
+  double wall_gap;                                  ///< NaN without walls
+  double gap = 0;  ///< to the nearest other cell, which others than the cell are asked for
   core::StretchRange stretch;
-  // In three dimensions.
+  // Of a surface.
   double z = 0, volume = 0, surface_area = 0;
   std::array<double, 3> semi_axes{};   ///< largest first
   std::array<double, 3> short_axis{};  ///< unit vector, its first component that is not 0 positive

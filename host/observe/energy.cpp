@@ -17,7 +17,7 @@ double given_away(const core::CellNodes& m, const core::Ranks<D>& ranks) {
     double power = 0;
     for (int i = m.cells[c].first; i < m.cells[c].end(); ++i) {
       power += m.force[0][i] * m.velocity[0][i] + m.force[1][i] * m.velocity[1][i];
-      if (D == 3) power += m.force[2][i] * m.velocity[2][i];
+      for (int k = 2; k < D; ++k) power += m.force[k][i] * m.velocity[k][i];
     }
     return power;
   });

@@ -100,17 +100,22 @@ class Vorticity {
       above_[k] = known.at(rows_.beside(row, axis, 1));
     }
   }
+  static constexpr int components = D * (D - 1) / 2;
   /// Along z, in three dimensions along x, y and z, lattice units; 0 in the solid.
-  [[nodiscard]] std::array<double, D == 2 ? 1 : 3> at(int x) const {
-    if (solid(x, 0, 0)) return {};
-    const double along_z = rise(x, 1, 0) - rise(x, 0, 1);
-    if constexpr (D == 2) return {along_z};
-    if constexpr (D == 3) return {rise(x, 2, 1) - rise(x, 1, 2), rise(x, 0, 2) - rise(x, 2, 0), along_z};
+  [[nodiscard]] std::array<double, components> at(int x) const {
+    std::array<double, components> curl{};
+    if (solid(x, 0, 0)) return curl;
+    for (int k = 0; k < components; ++k) {
+      const int axis = 3 - components + k, next = (axis + 1) % 3, last = (axis + 2) % 3;
+      curl[static_cast<std::size_t>(k)] = rise(x, last, next) - rise(x, next, last);
+    }
+    return curl;
   }
 
  private:
   /// d velocity[component] / d axis
-  [[nodiscard]] double rise(int x, std::size_t component, int axis) const {
+  [[nodiscard]] double rise(int x, int of, int axis) const {
+    const auto component = static_cast<std::size_t>(of);
     return (beside(x, component, axis, 1) - beside(x, component, axis, -1)) / 2;
   }
   [[nodiscard]] double beside(int x, std::size_t component, int axis, int step) const {
@@ -169,9 +174,8 @@ FieldSnapshot fields_of(const core::AnyFluid<D>& fluid, const scene::Scene& scen
   using Row = std::array<int, D - 1>;
   const StoredRows<D> rows(fluid.setting().domain, scene.output.field_storage);
   FieldSnapshot snapshot;
-  snapshot.nx = rows.along(0);
-  snapshot.ny = rows.along(1);
-  if constexpr (D == 3) snapshot.nz = rows.along(2);
+  int* const counts[] = {&snapshot.nx, &snapshot.ny, &snapshot.nz};
+  for (int axis = 0; axis < D; ++axis) *counts[axis] = rows.along(axis);
   const int columns = snapshot.nx;
   const auto add = [&]<class V>(V, const char* name, const char* unit, int components, bool around, auto gather,
                                 auto fill) {
@@ -203,7 +207,7 @@ FieldSnapshot fields_of(const core::AnyFluid<D>& fluid, const scene::Scene& scen
       *to++ = core::viscosity_of(1 / nodes[rows.node(column)]) * viscosity_unit;
   });
   Vorticity<D> curl(rows, fluid.setting().solid.get(), fluid.walls_now());
-  add(Moments{}, "vorticity", "1/s", D == 2 ? 1 : 3, true, moments,
+  add(Moments{}, "vorticity", "1/s", Vorticity<D>::components, true, moments,
       [=](const Row& row, const KnownRows<Moments>& known, double* to) mutable {
         curl.begin(row, known);
         for (int column = 0; column < columns; ++column) {

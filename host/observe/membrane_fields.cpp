@@ -37,7 +37,6 @@ void add_curvatures(const core::Surfaces& surfaces, int cell, double spacing, st
 
 template <int D>
 MembraneSnapshot observe_membranes(core::AnySolver<D>& solver, const units::LatticeUnits& units) {
-  constexpr bool in_space = D == 3;
   const auto& cells = solver.cells();
   auto* const tasks = solver.cell_tasks();
   MembraneSnapshot snapshot;
@@ -60,7 +59,7 @@ MembraneSnapshot observe_membranes(core::AnySolver<D>& solver, const units::Latt
   field("tension", "N/m", 1, [&cells, tasks, tension](int cell, std::vector<double>& values) {
     for (const double of_place : tensions_of(cells, cell, tasks->tensions(cell))) values.push_back(of_place * tension);
   });
-  if constexpr (in_space) {
+  if constexpr (D == 3) {
     field("curvature", "1/m", 1,
           [&cells, spacing](int cell, std::vector<double>& values) { add_curvatures(cells, cell, spacing, values); });
     snapshot.triangles = [&cells](int cell) -> const Triangles& { return cells.type_of(cell).mesh.triangles(); };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <initializer_list>
 #include <map>
+#include <optional>
 #include <stdexcept>
 
 #include "rotation.hpp"
@@ -23,19 +24,15 @@ template <auto member>
 Value cell(const Row& row) {
   return row.cell->*member;
 }
-/// Of a surface; empty of an outline.
-template <auto member>
-Value in_space(const Row& row) {
-  return row.cell->in_space ? Value((*row.cell->in_space).*member) : Value();
-}
-template <auto member, std::size_t k>
-Value in_space(const Row& row) {
-  return row.cell->in_space ? Value(((*row.cell->in_space).*member)[k]) : Value();
+template <auto member, std::size_t axis>
+Value cell(const Row& row) {
+  return (row.cell->*member)[axis];
 }
 /// Of an outline; empty of a surface.
 template <auto member>
-Value in_plane(const Row& row) {
-  return row.cell->in_space ? Value() : Value(row.cell->*member);
+Value of_outline(const Row& row) {
+  const std::optional<double>& value = row.cell->*member;
+  return value ? Value(*value) : Value();
 }
 template <auto member>
 Value aggregate(const Row& row) {
@@ -130,11 +127,11 @@ Table cells_table() {
           {.name = "area",
            .unit = "m2",
            .doc = "that the outline encloses; empty in three dimensions",
-           .value = in_plane<&CellSnapshot::area>},
+           .value = of_outline<&CellSnapshot::area>},
           {.name = "perimeter",
            .unit = "m",
            .doc = "of the outline; empty in three dimensions",
-           .value = in_plane<&CellSnapshot::perimeter>},
+           .value = of_outline<&CellSnapshot::perimeter>},
           {.name = "min_gap",
            .unit = "m",
            .doc =
@@ -168,50 +165,46 @@ Table cells_table() {
            .unit = "",
            .doc = "largest stretch of a segment of the cell",
            .value = cell<&CellSnapshot::stretch_max>},
-          {.name = "z",
-           .unit = "m",
-           .doc = "centroid along z",
-           .value = in_space<&CellSnapshot::InSpace::z>,
-           .in_space = true},
+          {.name = "z", .unit = "m", .doc = "centroid along z", .value = cell<&CellSnapshot::z>, .in_space = true},
           {.name = "volume",
            .unit = "m3",
            .doc = "that the surface encloses",
-           .value = in_space<&CellSnapshot::InSpace::volume>,
+           .value = cell<&CellSnapshot::volume>,
            .in_space = true},
           {.name = "surface_area",
            .unit = "m2",
            .doc = "of the surface",
-           .value = in_space<&CellSnapshot::InSpace::surface_area>,
+           .value = cell<&CellSnapshot::surface_area>,
            .in_space = true},
           {.name = "semi_axis_a",
            .unit = "m",
            .doc = "largest semi-axis of the ellipsoid that has the enclosed volume's second moments",
-           .value = in_space<&CellSnapshot::InSpace::semi_axes, 0>,
+           .value = cell<&CellSnapshot::semi_axes, 0>,
            .in_space = true},
           {.name = "semi_axis_b",
            .unit = "m",
            .doc = "its middle semi-axis",
-           .value = in_space<&CellSnapshot::InSpace::semi_axes, 1>,
+           .value = cell<&CellSnapshot::semi_axes, 1>,
            .in_space = true},
           {.name = "semi_axis_c",
            .unit = "m",
            .doc = "its smallest semi-axis",
-           .value = in_space<&CellSnapshot::InSpace::semi_axes, 2>,
+           .value = cell<&CellSnapshot::semi_axes, 2>,
            .in_space = true},
           {.name = "axis_x",
            .unit = "",
            .doc = "direction of the smallest semi-axis, which is the axis of a red cell: a unit vector",
-           .value = in_space<&CellSnapshot::InSpace::short_axis, 0>,
+           .value = cell<&CellSnapshot::short_axis, 0>,
            .in_space = true},
           {.name = "axis_y",
            .unit = "",
            .doc = "likewise",
-           .value = in_space<&CellSnapshot::InSpace::short_axis, 1>,
+           .value = cell<&CellSnapshot::short_axis, 1>,
            .in_space = true},
           {.name = "axis_z",
            .unit = "",
            .doc = "likewise",
-           .value = in_space<&CellSnapshot::InSpace::short_axis, 2>,
+           .value = cell<&CellSnapshot::short_axis, 2>,
            .in_space = true},
       }),
       for_each_cell};

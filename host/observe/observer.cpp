@@ -1,6 +1,7 @@
 #include "observer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -36,9 +37,11 @@ void count_aggregates(const Aggregates& aggregates, Snapshot& snapshot) {
 /// What contacts there are, of whichever rank's cells.
 template <int D>
 ContactSnapshot in_si(const CellContact& c, double length) {
-  ContactSnapshot s{c.cell_a, c.cell_b, {c.image.x, c.image.y, c.image.z}, c.gap * length, std::nan(""), std::nan("")};
-  if (D == 2) s.contact_length = c.contact_length * length;
-  if (D == 3) s.contact_area = c.contact_length * length * length;
+  constexpr std::array of{&ContactSnapshot::contact_length, &ContactSnapshot::contact_area};
+  ContactSnapshot s{c.cell_a, c.cell_b, {c.image.x, c.image.y, c.image.z}, c.gap * length};
+  double measure = c.contact_length;
+  for (int k = 1; k < D; ++k) measure *= length;
+  s.*of[D - 2] = measure;
   return s;
 }
 
@@ -163,21 +166,18 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
     s.x = units::coordinate(m.x, length);
     s.y = units::coordinate(m.y, length);
     s.deformation = m.deformation;
-    s.area = m.area * length * length;
-    s.perimeter = m.perimeter * length;
+    if (m.area) s.area = *m.area * length * length;
+    if (m.perimeter) s.perimeter = *m.perimeter * length;
     s.min_gap = m.gap * length;
     s.wall_gap = m.wall_gap * length;
     s.aggregate = aggregates.label[k];
     s.through_image = aggregates.through_image[k];
     follow_stretch(m.stretch, s);
-    if (D == 3) {
-      CellSnapshot::InSpace& space = s.in_space.emplace();
-      space.z = units::coordinate(m.z, length);
-      space.volume = m.volume * length * length * length;
-      space.surface_area = m.surface_area * length * length;
-      for (std::size_t axis = 0; axis < 3; ++axis) space.semi_axes[axis] = m.semi_axes[axis] * length;
-      space.short_axis = m.short_axis;
-    }
+    s.z = units::coordinate(m.z, length);
+    s.volume = m.volume * length * length * length;
+    s.surface_area = m.surface_area * length * length;
+    for (std::size_t axis = 0; axis < 3; ++axis) s.semi_axes[axis] = m.semi_axes[axis] * length;
+    s.short_axis = m.short_axis;
     snapshot.cells.push_back(std::move(s));
   }
   snapshot.rotation = rotation_.follow(contacts, aggregates, centers, domain_);

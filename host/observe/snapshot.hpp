@@ -14,25 +14,23 @@ namespace rouleau::observe {
 struct CellSnapshot {
   int cell;  ///< 0-based, in the order of the scene
   std::string type;
-  double x, y;                 ///< centroid, m; x is not wrapped into the box
-  double angle;                ///< of the long axis of the inertia ellipse, rad, continuous in time; NaN for a circle
-  double deformation;          ///< (L - B) / (L + B) of the inertia ellipse
-  double area;                 ///< m2; NaN in three dimensions
-  double perimeter;            ///< m; NaN in three dimensions
+  double x, y;         ///< centroid, m; x is not wrapped into the box
+  double angle;        ///< of the long axis of the inertia ellipse, rad, continuous in time; NaN for a circle
+  double deformation;  ///< (L - B) / (L + B) of the inertia ellipse
+  /// m2 and m, of an outline; none of a surface.
+  std::optional<double> area = {}, perimeter = {};
   double tank_treading_angle;  ///< of the first node about the centroid, rad, continuous in time
   double min_gap;      ///< m, to the nearest membrane of another cell or of an image; infinite when there is none
   double wall_gap;     ///< m, to the nearer wall; NaN without walls
   int aggregate;       ///< label: smallest index of a cell of the aggregate it belongs to
   bool through_image;  ///< its aggregate is held together by a contact across the periodic boundary
   double stretch_min, stretch_max;  ///< of its segments or edges: length over rest length
-  /// In three dimensions, where angle and deformation are those of the plane of x and y.
-  struct InSpace {
-    double z;                          ///< centroid, m
-    double volume, surface_area;       ///< m3, m2
-    std::array<double, 3> semi_axes;   ///< m, of the inertia ellipsoid, largest first
-    std::array<double, 3> short_axis;  ///< unit vector, its first component that is not 0 positive
-  };
-  std::optional<InSpace> in_space = {};
+  // Of a surface, angle and deformation of which are those of the plane of x and y; 0 of an outline.
+  double z = 0;                        ///< centroid, m
+  double volume = 0;                   ///< m3
+  double surface_area = 0;             ///< m2
+  std::array<double, 3> semi_axes{};   ///< m, of the inertia ellipsoid, largest first
+  std::array<double, 3> short_axis{};  ///< unit vector, its first component that is not 0 positive
 };
 
 /// Two cells (or a cell and an image) whose gap is below Output::aggregate_gap.
@@ -40,8 +38,9 @@ struct ContactSnapshot {
   int cell_a, cell_b;
   std::array<int, 3> image;  ///< periodic shift of cell_b, in boxes
   double gap;                ///< m, smallest
-  double contact_length;     ///< m, length of a's membrane nearer than the aggregate gap; NaN in three dimensions
-  double contact_area = std::numeric_limits<double>::quiet_NaN();  ///< m2, in three dimensions
+  double contact_length =
+      std::numeric_limits<double>::quiet_NaN();  ///< m, of an outline a, nearer than the aggregate gap
+  double contact_area = std::numeric_limits<double>::quiet_NaN();  ///< m2, the same of a surface
 };
 
 /// Outlines or surfaces of all cells, one after another, as frames keep them.

@@ -86,14 +86,11 @@ std::vector<std::uint64_t> numbers(const observe::Snapshot& s) {
                           s.energy.wall_power,
                           s.energy.membrane_dissipation};
   for (const observe::CellSnapshot& c : s.cells) {
-    all.insert(all.end(),
-               {double(c.cell), c.x, c.y, c.angle, c.deformation, c.area, c.perimeter, c.tank_treading_angle, c.min_gap,
-                c.wall_gap, double(c.aggregate), double(c.through_image), c.stretch_min, c.stretch_max});
-    if (c.in_space) {
-      all.insert(all.end(), {c.in_space->z, c.in_space->volume, c.in_space->surface_area});
-      all.insert(all.end(), c.in_space->semi_axes.begin(), c.in_space->semi_axes.end());
-      all.insert(all.end(), c.in_space->short_axis.begin(), c.in_space->short_axis.end());
-    }
+    all.insert(all.end(), {double(c.cell), c.x, c.y, c.angle, c.deformation, c.area.value_or(NAN),
+                           c.perimeter.value_or(NAN), c.tank_treading_angle, c.min_gap, c.wall_gap, double(c.aggregate),
+                           double(c.through_image), c.stretch_min, c.stretch_max, c.z, c.volume, c.surface_area});
+    all.insert(all.end(), c.semi_axes.begin(), c.semi_axes.end());
+    all.insert(all.end(), c.short_axis.begin(), c.short_axis.end());
   }
   for (const observe::ContactSnapshot& c : s.contacts) {
     all.insert(all.end(), {double(c.cell_a), double(c.cell_b), double(c.image[0]), double(c.image[1]),

@@ -201,7 +201,9 @@ WrittenRun spheres(bool tube) {
       cell.cell = k;
       cell.type = "ball";
       cell.x = 3e-6 * (k + 1) * i;
-      cell.in_space = CellSnapshot::InSpace{1e-6 * i * i, 30e-18, 50e-12, {}, {}};
+      cell.z = 1e-6 * i * i;
+      cell.volume = 30e-18;
+      cell.surface_area = 50e-12;
       s.cells.push_back(cell);
     }
     s.contacts.push_back({.cell_a = 0,
