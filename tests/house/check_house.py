@@ -33,8 +33,8 @@ LONG_FUNCTIONS = {"core/fluid/energetics": 130, "observe/observables": 183}
 LONG_UNITS = {"core/fluid/fluid": 904, "core/solver/cell_exchange": 507, "hdf5/hdf5_file": 588,
               "observe/observables": 596}
 # Lines above core that ask whether there are two dimensions or three. What holds for x holds for y and z: loops over the axes of a
-# scene::Vector, words from scene/dimension_words.hpp, templates in D.
-BRANCHES_ON_DIMENSION = 114
+# scene::Vector, words from scene/dimension_words.hpp, templates in D, constants in arrays of both.
+BRANCHES_ON_DIMENSION = 37
 ASKS = re.compile(r"\bif\b|\?|[=!]=|&&|\|\||!")
 DIMENSION = re.compile(r"\b(D|dimensions?_?(\(\))?)\s*[=!<>]=?\s*[23D]|\b(is_|of_)?(in_)?space_?(\(\))?\s*(\?|\)|&&|\|\||;|,)|\bin_space\b"
                        r"|\.z\.empty\(\)")
