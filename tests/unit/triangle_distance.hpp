@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "core/contact/triangle_distance.hpp"
+#include "core/geometry/triangle_distance.hpp"
 
 namespace rouleau::test {
 

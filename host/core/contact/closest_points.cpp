@@ -4,7 +4,7 @@
 
 #include "core/domain/run_loop.hpp"
 #include "core/surface/padded_triangles.hpp"
-#include "triangle_distance.hpp"
+#include "core/geometry/triangle_distance.hpp"
 
 namespace rouleau::core {
 

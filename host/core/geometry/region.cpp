@@ -1,0 +1,131 @@
+#include "region.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace rouleau::core {
+
+namespace {
+
+template <int D>
+class Outside final : public Region<D> {
+ public:
+  explicit Outside(RegionPointer<D> region) : region_(std::move(region)) {}
+  [[nodiscard]] Distance<D> distance(const Vec<D>& place) const override {
+    const Distance<D> inside = region_->distance(place);
+    return {-inside.value, -inside.gradient};
+  }
+
+ private:
+  RegionPointer<D> region_;
+};
+
+/// Of several regions the least distance (intersection), or the largest (union).
+template <int D>
+class Joined final : public Region<D> {
+ public:
+  Joined(std::vector<RegionPointer<D>> regions, bool least) : regions_(std::move(regions)), least_(least) {}
+  [[nodiscard]] Distance<D> distance(const Vec<D>& place) const override {
+    Distance<D> chosen = regions_.front()->distance(place);
+    for (std::size_t i = 1; i < regions_.size(); ++i) {
+      const Distance<D> other = regions_[i]->distance(place);
+      if (least_ ? other.value < chosen.value : other.value > chosen.value) chosen = other;
+    }
+    return chosen;
+  }
+
+ private:
+  std::vector<RegionPointer<D>> regions_;
+  bool least_;
+};
+
+template <int D>
+class WithImages final : public Region<D> {
+ public:
+  WithImages(RegionPointer<D> region, const Domain<D>& domain) : region_(std::move(region)), domain_(domain) {}
+  [[nodiscard]] Distance<D> distance(const Vec<D>& place) const override {
+    Vec<D> first = place;
+    std::array<int, D> images;
+    int count = 1;
+    for (int k = 0; k < D; ++k) {
+      const double period = domain_.period(k);
+      images[k] = period > 0 ? 3 : 1;
+      if (period > 0) first[k] -= period * (std::floor(place[k] / period) + 1);
+      count *= images[k];
+    }
+    Distance<D> nearest{-std::numeric_limits<double>::infinity(), Vec<D>::Zero()};
+    for (int i = 0; i < count; ++i) {
+      Vec<D> image = first;
+      for (int k = 0, rest = i; k < D; rest /= images[k++]) image[k] += rest % images[k] * domain_.period(k);
+      const Distance<D> of_image = region_->distance(image);
+      if (of_image.value > nearest.value) nearest = of_image;
+    }
+    return nearest;
+  }
+
+ private:
+  RegionPointer<D> region_;
+  Domain<D> domain_;
+};
+
+}  // namespace
+
+template <int D>
+RegionPointer<D> outside_of(RegionPointer<D> region) {
+  return std::make_shared<Outside<D>>(std::move(region));
+}
+
+template <int D>
+RegionPointer<D> intersection(std::vector<RegionPointer<D>> regions) {
+  if (regions.size() == 1) return std::move(regions.front());
+  return std::make_shared<Joined<D>>(std::move(regions), true);
+}
+
+template <int D>
+RegionPointer<D> union_of(std::vector<RegionPointer<D>> regions) {
+  if (regions.size() == 1) return std::move(regions.front());
+  return std::make_shared<Joined<D>>(std::move(regions), false);
+}
+
+template <int D>
+RegionPointer<D> with_images(RegionPointer<D> region, const Domain<D>& domain) {
+  return std::make_shared<WithImages<D>>(std::move(region), domain);
+}
+
+template <int D>
+double share_inside(const Region<D>& region, const Vec<D>& place, const Vec<D>& by) {
+  constexpr double exact = 1e-14;
+  constexpr int most_tries = 100;
+  double inside = 0, outside = 1, at_inside = region.distance(place).value,
+         at_outside = region.distance(place + by).value;
+  // Regula falsi of Illinois type: distances are nearly linear along a link.
+  for (int i = 0, side = 0; i < most_tries && outside - inside > exact && at_outside < 0; ++i) {
+    const double share = inside + (outside - inside) * at_inside / (at_inside - at_outside);
+    const double value = region.distance(place + share * by).value;
+    if (value > 0) {
+      inside = share, at_inside = value;
+      if (side == 1) at_outside /= 2;
+      side = 1;
+    } else {
+      outside = share, at_outside = value;
+      if (side == -1) at_inside /= 2;
+      side = -1;
+    }
+  }
+  return outside;
+}
+
+template RegionPointer<2> outside_of(RegionPointer<2>);
+template RegionPointer<3> outside_of(RegionPointer<3>);
+template RegionPointer<2> intersection(std::vector<RegionPointer<2>>);
+template RegionPointer<3> intersection(std::vector<RegionPointer<3>>);
+template RegionPointer<2> union_of(std::vector<RegionPointer<2>>);
+template RegionPointer<3> union_of(std::vector<RegionPointer<3>>);
+template RegionPointer<2> with_images(RegionPointer<2>, const Domain<2>&);
+template RegionPointer<3> with_images(RegionPointer<3>, const Domain<3>&);
+template double share_inside(const Region<2>&, const Vec<2>&, const Vec<2>&);
+template double share_inside(const Region<3>&, const Vec<3>&, const Vec<3>&);
+
+}  // namespace rouleau::core

@@ -1,0 +1,48 @@
+// Where fluid may be: regions, each given by the signed distance to its border.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/domain/domain.hpp"
+#include "core/domain/vec.hpp"
+
+namespace rouleau::core {
+
+/// Of a place to the border of a region, in spacings.
+template <int D>
+struct Distance {
+  double value;     ///< positive inside
+  Vec<D> gradient;  ///< of the value: a unit vector that points into the region
+};
+
+/// A part of space. Places are counted as nodes are: node i along an axis lies at coordinate i.
+template <int D>
+class Region {
+ public:
+  virtual ~Region() = default;
+  /// Its zero is the border. Elsewhere it is the distance, or less where regions are joined: never more. It is continuous;
+  /// where two parts of the border are as near the gradient is that of one of them.
+  [[nodiscard]] virtual Distance<D> distance(const Vec<D>& place) const = 0;
+};
+
+template <int D>
+using RegionPointer = std::shared_ptr<const Region<D>>;
+
+/// All space but a region.
+template <int D>
+RegionPointer<D> outside_of(RegionPointer<D> region);
+/// What lies in each of them, and what lies in any. At least one.
+template <int D>
+RegionPointer<D> intersection(std::vector<RegionPointer<D>> regions);
+template <int D>
+RegionPointer<D> union_of(std::vector<RegionPointer<D>> regions);
+/// A region with its images along the periodic axes of a domain. It must not reach further than one period from the domain.
+template <int D>
+RegionPointer<D> with_images(RegionPointer<D> region, const Domain<D>& domain);
+
+/// Share of the way from a place inside of a region to one outside, `by` away, at which it meets the border: in (0, 1].
+template <int D>
+double share_inside(const Region<D>& region, const Vec<D>& place, const Vec<D>& by);
+
+}  // namespace rouleau::core
