@@ -1,0 +1,25 @@
+// The border of what is positive among samples on a grid.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/domain/vec.hpp"
+
+namespace rouleau::core {
+
+/// A border made of facets, as FacetedRegion takes it.
+template <int D>
+struct Border {
+  std::vector<Vec<D>> corners;
+  std::vector<std::array<int, D>> facets;
+};
+
+/// Where samples, one spacing apart, change their sign: linear along edges and diagonals of the grid, of second order in its
+/// spacing. Each square is cut into two triangles, each cube into six tetrahedra (Kuhn's), so that borders have no holes; they
+/// end where the grid does. `samples`: the first axis is the fastest; sample 0 lies at the origin. Zero counts as negative. Throws
+/// std::invalid_argument where `samples` is not as long as the grid.
+template <int D>
+Border<D> zero_border(const std::vector<double>& samples, const std::array<int, D>& size);
+
+}  // namespace rouleau::core
