@@ -16,15 +16,13 @@ namespace rouleau::core {
 namespace {
 
 template <int D>
-std::vector<BoundingBox<D>> boxes_around(const std::vector<Vec<D>>& corners,
-                                         const std::vector<std::array<int, D>>& facets) {
+std::vector<BoundingBox<D>> boxes_around(const Border<D>& border) {
   std::vector<BoundingBox<D>> boxes;
-  for (const auto& facet : facets) {
+  for (const auto& facet : border.facets) {
     BoundingBox<D>& box = boxes.emplace_back();
     for (int k = 0; k < D; ++k) {
-      const auto [least, most] =
-          std::ranges::minmax(facet, {}, [&](int corner) { return corners.at(static_cast<std::size_t>(corner))[k]; });
-      box.least[k] = corners[least][k], box.most[k] = corners[most][k];
+      const auto [least, most] = std::ranges::minmax(facet, {}, [&](int corner) { return border.corners[corner][k]; });
+      box.least[k] = border.corners[least][k], box.most[k] = border.corners[most][k];
     }
   }
   if (boxes.empty()) throw std::invalid_argument("a border without facets");
@@ -41,34 +39,28 @@ struct FacetedRegion<D>::Nearest {
 };
 
 template <int D>
-FacetedRegion<D>::FacetedRegion(std::vector<Vec<D>> corners, std::vector<Facet> facets)
-    : corners_(std::move(corners)), facets_(std::move(facets)), tree_(boxes_around<D>(corners_, facets_)) {
-  for (const Facet& facet : facets_) {
-    const Vec<D> along = corners_[facet[1]] - corners_[facet[0]];
-    Vec<D> normal;
-    if constexpr (D == 2) {
-      normal = {along[1], -along[0]};
-    } else {
-      normal = along.cross(corners_[facet[2]] - corners_[facet[0]]);
-    }
-    const double size = normal.norm();
-    if (!(size > 0)) throw std::invalid_argument("facet " + std::to_string(normals_.size()) + " has no size");
-    normals_.push_back(normal / size);
+FacetedRegion<D>::FacetedRegion(Border<D> border) : border_(std::move(border)), tree_(boxes_around<D>(border_)) {
+  for (const Facet& facet : border_.facets) {
+    const Vec<D> normal = border_.normal(facet);
+    if (!(normal.norm() > 0)) throw std::invalid_argument("facet " + std::to_string(normals_.size()) + " has no size");
+    normals_.push_back(normal.normalized());
   }
   add_normals();
 }
 
 template <int D>
 void FacetedRegion<D>::add_normals() {
-  corner_normals_.resize(corners_.size(), Vec<D>::Zero());
+  corner_normals_.resize(border_.corners.size(), Vec<D>::Zero());
   std::map<std::pair<int, int>, Vec<D>> of_edges;
   const auto edge = [](int a, int b) { return std::pair(std::min(a, b), std::max(a, b)); };
-  for (std::size_t i = 0; i < facets_.size(); ++i) {
+  for (std::size_t i = 0; i < border_.facets.size(); ++i) {
     for (int k = 0; k < D; ++k) {
-      const int corner = facets_[i][k], next = facets_[i][(k + 1) % D], last = facets_[i][(k + D - 1) % D];
+      const int corner = border_.facets[i][k], next = border_.facets[i][(k + 1) % D],
+                last = border_.facets[i][(k + D - 1) % D];
       double angle = 1;
       if constexpr (D == 3) {
-        const Vec<D> to_next = corners_[next] - corners_[corner], to_last = corners_[last] - corners_[corner];
+        const Vec<D> to_next = border_.corners[next] - border_.corners[corner],
+                     to_last = border_.corners[last] - border_.corners[corner];
         angle = std::atan2(to_next.cross(to_last).norm(), to_next.dot(to_last));
         of_edges.try_emplace(edge(next, last), Vec<D>::Zero()).first->second += normals_[i];
       }
@@ -76,7 +68,7 @@ void FacetedRegion<D>::add_normals() {
     }
   }
   if constexpr (D == 3) {
-    for (const Facet& facet : facets_) {
+    for (const Facet& facet : border_.facets) {
       auto& normals = edge_normals_.emplace_back();
       for (int k = 0; k < D; ++k) normals[k] = of_edges.at(edge(facet[(k + 1) % D], facet[(k + 2) % D]));
     }
@@ -86,13 +78,14 @@ void FacetedRegion<D>::add_normals() {
 template <int D>
 auto FacetedRegion<D>::nearest_of(const Facet& facet, const Vec<D>& place) const -> Nearest {
   if constexpr (D == 2) {
-    const Vec<D> from = place - corners_[facet[0]], along = corners_[facet[1]] - corners_[facet[0]];
+    const Vec<D> from = place - border_.corners[facet[0]],
+                 along = border_.corners[facet[1]] - border_.corners[facet[0]];
     const double share = std::clamp(from.dot(along) / along.squaredNorm(), 0.0, 1.0);
     return {{1 - share, share}, from - share * along};
   } else {
     const auto vector = [](const Vec<D>& v) { return Vectors<double>{v[0], v[1], v[2]}; };
-    const auto found = closest_point(vector(place), vector(corners_[facet[0]]), vector(corners_[facet[1]]),
-                                     vector(corners_[facet[2]]));
+    const auto found = closest_point(vector(place), vector(border_.corners[facet[0]]),
+                                     vector(border_.corners[facet[1]]), vector(border_.corners[facet[2]]));
     return {{found.weight[0], found.weight[1], found.weight[2]}, {found.away.x, found.away.y, found.away.z}};
   }
 }
@@ -103,7 +96,7 @@ Distance<D> FacetedRegion<D>::distance(const Vec<D>& place) const {
   Nearest nearest{};
   double least = std::numeric_limits<double>::infinity();
   tree_.nearest(place, least, [&](int i, double) {
-    const Nearest found = nearest_of(facets_[i], place);
+    const Nearest found = nearest_of(border_.facets[i], place);
     // Of facets that are as near the first one counts, in whichever order they come.
     const double square = found.away.squaredNorm();
     if (square < least || (square == least && i < facet)) least = square, facet = i, nearest = found;
@@ -113,7 +106,7 @@ Distance<D> FacetedRegion<D>::distance(const Vec<D>& place) const {
   Vec<D> normal = normals_[facet];
   for (int k = 0; k < D; ++k) {
     if (beyond((k + 1) % D) && beyond((k + D - 1) % D)) {
-      normal = corner_normals_[facets_[facet][k]];
+      normal = corner_normals_[border_.facets[facet][k]];
     } else if (D == 3 && beyond(k) && !beyond((k + 1) % D) && !beyond((k + 2) % D)) {
       normal = edge_normals_[facet][k];
     }

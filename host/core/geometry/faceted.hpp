@@ -4,22 +4,20 @@
 #include <array>
 #include <vector>
 
+#include "border.hpp"
 #include "facet_tree.hpp"
 #include "region.hpp"
 
 namespace rouleau::core {
 
-/// What a border made of facets encloses: segments in the plane, triangles in space. The sign is that of the angle-weighted
-/// normal where the border is nearest (Baerentzen and Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 243, 2005).
+/// What a border encloses. The sign is that of the angle-weighted normal where the border is nearest (Baerentzen and Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 243, 2005).
 template <int D>
 class FacetedRegion final : public Region<D> {
  public:
-  /// Corners of a facet, by number.
   using Facet = std::array<int, D>;
-
-  /// Segments have the region at their left; triangles run counter-clockwise seen from outside. Borders should be closed; where
-  /// one ends, the region goes on along its last facets. Throws std::invalid_argument for a facet without size, or none.
-  FacetedRegion(std::vector<Vec<D>> corners, std::vector<Facet> facets);
+  /// Where the border is not closed, the region goes on along its last facets. Throws std::invalid_argument for a facet without
+  /// size, or none.
+  explicit FacetedRegion(Border<D> border);
 
   [[nodiscard]] Distance<D> distance(const Vec<D>& place) const override;
 
@@ -28,8 +26,7 @@ class FacetedRegion final : public Region<D> {
   [[nodiscard]] Nearest nearest_of(const Facet& facet, const Vec<D>& place) const;
   void add_normals();
 
-  std::vector<Vec<D>> corners_;
-  std::vector<Facet> facets_;
+  Border<D> border_;
   std::vector<Vec<D>> normals_;         ///< of facets, outward
   std::vector<Vec<D>> corner_normals_;  ///< of corners
   std::vector<std::array<Vec<D>, D>>

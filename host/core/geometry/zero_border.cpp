@@ -1,6 +1,5 @@
 #include "zero_border.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -55,15 +54,9 @@ class Cutter {
   }
   /// With the positive sample behind it, as FacetedRegion wants it; nothing where it has no size.
   void add(std::array<int, D> facet, int inside) {
-    const Vec<D> first = border.corners[facet[0]], along = border.corners[facet[1]] - first;
-    Vec<D> normal;
-    if constexpr (D == 2) {
-      normal = {along[1], -along[0]};
-    } else {
-      normal = along.cross(border.corners[facet[2]] - first);
-    }
+    const Vec<D> normal = border.normal(facet);
     if (!(normal.norm() > 0)) return;
-    if (normal.dot(place_of(inside) - first) > 0) std::swap(facet[0], facet[1]);
+    if (normal.dot(place_of(inside) - border.corners[facet[0]]) > 0) std::swap(facet[0], facet[1]);
     border.facets.push_back(facet);
   }
 

@@ -4,16 +4,9 @@
 #include <array>
 #include <vector>
 
-#include "core/domain/vec.hpp"
+#include "border.hpp"
 
 namespace rouleau::core {
-
-/// A border made of facets, as FacetedRegion takes it.
-template <int D>
-struct Border {
-  std::vector<Vec<D>> corners;
-  std::vector<std::array<int, D>> facets;
-};
 
 /// Where samples, one spacing apart, change their sign: linear along edges and diagonals of the grid, of second order in its
 /// spacing. Each square is cut into two triangles, each cube into six tetrahedra (Kuhn's), so that borders have no holes; they

@@ -25,7 +25,7 @@ Vec<D> random_place(std::mt19937& random, double reach) {
 }
 
 /// The twelve triangles of a box.
-FacetedRegion<3> box_of_triangles(const Vec<3>& lower, const Vec<3>& upper, const Eigen::Matrix3d& turned) {
+Border<3> box_of_triangles(const Vec<3>& lower, const Vec<3>& upper, const Eigen::Matrix3d& turned) {
   std::vector<Vec<3>> corners;
   for (int i = 0; i < 8; ++i)
     corners.push_back(
@@ -54,7 +54,7 @@ FacetedRegion<2> star(const std::vector<double>& radii, std::vector<Vec<2>>& cor
     corners.emplace_back(radii[i] * std::cos(angle), radii[i] * std::sin(angle));
     facets.push_back({i, (i + 1) % n});
   }
-  return {corners, facets};
+  return FacetedRegion<2>({corners, facets});
 }
 
 /// By crossings of a ray along x.
@@ -87,7 +87,7 @@ TEST_CASE("The distance to a turned box of triangles is that of the formula", "[
   const Eigen::Matrix3d turned = Eigen::AngleAxisd(0.7, Vec<3>(1, 2, 3).normalized()).toRotationMatrix();
   const Vec<3> lower(-3, -1, -2), upper(2, 4, 1.5);
   const auto formula = box_region<3>(lower, upper);
-  const FacetedRegion<3> triangles = box_of_triangles(lower, upper, turned);
+  const FacetedRegion<3> triangles(box_of_triangles(lower, upper, turned));
   for (int i = 0; i < 2000; ++i) {
     const Vec<3> place = random_place<3>(random, 7);
     const Distance<3> wanted = formula->distance(place), found = triangles.distance(turned * place);
@@ -125,7 +125,7 @@ TEST_CASE("Gradients are derivatives of the distance", "[distances]") {
   const RegionPointer<3> cylinder = extruded(ball_region<2>({1, 2}, 3), 0, -4, 5);
   const RegionPointer<3> tube = outside_of(extruded(ball_region<2>({1, 2}, 3), 1, -INFINITY, INFINITY));
   const auto both = union_of<3>({cylinder, box_region<3>({-1, -1, -1}, {7, 1, 1})});
-  const FacetedRegion<3> triangles = box_of_triangles({-3, -1, -2}, {2, 4, 1.5}, Eigen::Matrix3d::Identity());
+  const FacetedRegion<3> triangles(box_of_triangles({-3, -1, -2}, {2, 4, 1.5}, Eigen::Matrix3d::Identity()));
   for (const Region<3>* region : {cylinder.get(), tube.get(), both.get(), static_cast<const Region<3>*>(&triangles)}) {
     for (int i = 0; i < 200; ++i) {
       const Vec<3> place = random_place<3>(random, 8);
@@ -182,7 +182,41 @@ TEST_CASE("A link is cut where the distance vanishes", "[distances]") {
 }
 
 TEST_CASE("A border with a facet without size is refused", "[distances]") {
-  CHECK_THROWS_AS(FacetedRegion<2>({{0, 0}, {1, 0}, {1, 0}, {0, 1}}, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}),
+  CHECK_THROWS_AS(FacetedRegion<2>({{{0, 0}, {1, 0}, {1, 0}, {0, 1}}, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}}),
                   std::invalid_argument);
-  CHECK_THROWS_AS(FacetedRegion<2>({}, {}), std::invalid_argument);
+  CHECK_THROWS_AS(FacetedRegion<2>(Border<2>{}), std::invalid_argument);
+}
+
+TEST_CASE("A box of triangles from end to end of a periodic axis is a channel without ends", "[distances]") {
+  std::mt19937 random = rouleau::test::generator(53);
+  const Domain<3> domain({10, 12, 12}, {true, true, false});
+  for (const double beyond : {0.0, 2.5}) {  // its ends in the domain's, or outside
+    const Border<3> box = box_of_triangles({-0.5 - beyond, 2, 3}, {9.5 + beyond, 7, 8}, Eigen::Matrix3d::Identity());
+    CHECK(open_sides(box).empty());
+    const FacetedRegion<3> channel(with_images(box, domain));
+    const auto formula = box_region<3>({-INFINITY, 2, 3}, {INFINITY, 7, 8});
+    std::uniform_real_distribution<double> along(-0.5, 9.5), across(0, 9.5);
+    for (int i = 0; i < 500; ++i) {
+      const Vec<3> place(along(random), across(random), across(random));
+      CHECK(channel.distance(place).value == Approx(formula->distance(place).value).margin(1e-9));
+    }
+  }
+}
+
+TEST_CASE("An obstacle over a periodic end is seen from both sides", "[distances]") {
+  const Domain<2> domain({10, 8}, {true, false});
+  const Border<2> square{{{-1.5, 2}, {0.5, 2}, {0.5, 4}, {-1.5, 4}}, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}};
+  const FacetedRegion<2> region(with_images(square, domain));
+  CHECK(region.distance({9, 3}).value == Approx(0.5));
+  CHECK(region.distance({7.5, 3}).value == Approx(-1));
+  CHECK(region.distance({1.5, 3}).value == Approx(-1));
+}
+
+TEST_CASE("What is not closed is found, with its place", "[distances]") {
+  Border<3> box = box_of_triangles({0, 0, 0}, {1, 1, 1}, Eigen::Matrix3d::Identity());
+  std::swap(box.facets[4][0], box.facets[4][1]);
+  CHECK(open_sides(box).size() == 3);
+  box.facets.erase(box.facets.begin() + 4);
+  CHECK(open_sides(box).size() == 3);
+  CHECK(open_sides(Border<2>{{{0, 0}, {1, 0}, {0, 1}}, {{0, 1}, {1, 2}}}).size() == 2);
 }

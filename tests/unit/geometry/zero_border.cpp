@@ -39,8 +39,7 @@ double largest_error(int n) {
   const Vec<D> center = Vec<D>::Constant(n / 2.0 - 0.3);
   const double radius = 0.35 * n;
   const auto ball = ball_region<D>(center, radius);
-  Border<D> border = zero_border<D>(samples_of<D>(*ball, n), cube<D>(n));
-  const FacetedRegion<D> region(border.corners, border.facets);
+  const FacetedRegion<D> region(zero_border<D>(samples_of<D>(*ball, n), cube<D>(n)));
   std::mt19937 random = rouleau::test::generator(50);
   std::uniform_real_distribution<double> component(0, n - 1);
   double largest = 0;
@@ -90,8 +89,7 @@ TEST_CASE("What is positive among samples is inside of their border", "[zero-bor
   constexpr int n = 9;
   std::vector<double> samples(n * n * n);
   for (double& sample : samples) sample = grey(random) - 127.5;
-  const auto border = zero_border<3>(samples, {n, n, n});
-  const FacetedRegion<3> region(border.corners, border.facets);
+  const FacetedRegion<3> region(zero_border<3>(samples, {n, n, n}));
   for (int i = 0; i < n * n * n; ++i) {
     const Vec<3> place(i % n, i / n % n, i / n / n);
     if ((place.array() < 1).any() || (place.array() > n - 2).any()) continue;
