@@ -23,7 +23,8 @@ template core::Domain<3> lattice_domain(const Scene&);
 std::shared_ptr<const core::SolidNodes<3>> solid_nodes(const Scene& scene) {
   if (!scene.domain.tube_radius) return nullptr;
   return std::make_shared<const core::SolidNodes<3>>(
-      core::tube_nodes(lattice_domain<3>(scene).size, *scene.domain.tube_radius / lattice_spacing(scene)));
+      lattice_domain<3>(scene).size,
+      core::tube_region(lattice_domain<3>(scene).size, *scene.domain.tube_radius / lattice_spacing(scene)));
 }
 
 std::vector<core::Layer> lattice_layers(const Scene& scene) {

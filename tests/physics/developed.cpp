@@ -29,7 +29,7 @@ double change(const Duct& duct) {
   setup.body_force_x = duct.force;
   setup.tube_radius = duct.tube_radius;
   if (duct.tube_radius > 0)
-    setup.solid = std::make_shared<const SolidNodes<3>>(tube_nodes(duct.size, duct.tube_radius));
+    setup.solid = std::make_shared<const SolidNodes<3>>(duct.size, tube_region(duct.size, duct.tube_radius));
   setup.developed = true;
   setup.collision = make_collision("trt", {0.1875}, setup.tau, false, 3);
   Surfaces none;

@@ -29,7 +29,7 @@ TubeFlow tube_flow(double radius, double tau, bool interpolated = true) {
   const int n = static_cast<int>(std::ceil(2 * radius - 1e-9));
   FluidSetting<3> setting{
       .domain = {{4, n, n}, {true, false, false}}, .relaxation_rate = 1 / tau, .body_force = {force}};
-  const SolidNodes<3> tube = tube_nodes({4, n, n}, radius);
+  const SolidNodes<3> tube({4, n, n}, tube_region({4, n, n}, radius));
   const auto is_solid = [&](const SolidNodes<3>::Node& node) { return tube.at(node); };
   setting.solid = std::make_shared<const SolidNodes<3>>(interpolated ? tube : SolidNodes<3>({4, n, n}, is_solid));
   Fluid3 fluid(setting, make_collision("trt", {0.1875}, tau, false, 3));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/domain/domain.hpp"
+#include "core/geometry/formulas.hpp"
 
 namespace rouleau::core {
 
@@ -34,6 +35,13 @@ class SolidNodes {
       for (node[0] = 0; node[0] < size[0]; ++node[0]) solid_.push_back(is_solid(node));
     }
     fluid_count_ = std::count(solid_.begin(), solid_.end(), false);
+  }
+
+  /// All nodes outside of a region, or on its border; walls lie there.
+  SolidNodes(const Node& size, RegionPointer<D> region)
+      : SolidNodes(
+            size, [&](const Node& node) { return region->distance(place_of(node)).value <= 0; },
+            [region](const Node& node, const Node& to) { return region->share_inside(place_of(node), place_of(to)); }) {
   }
 
   [[nodiscard]] const Node& size() const { return size_; }
@@ -61,20 +69,17 @@ class SolidNodes {
   Cut cut_;
   std::vector<bool> solid_;
   long fluid_count_ = 0;
+
+  static Vec<D> place_of(const Node& node) {
+    Vec<D> place;
+    for (int k = 0; k < D; ++k) place[k] = node[k];
+    return place;
+  }
 };
 
 /// A tube along x through the middle of the lattice; its radius in spacings.
-inline SolidNodes<3> tube_nodes(const std::array<int, 3>& size, double radius) {
-  using Node = SolidNodes<3>::Node;
-  const double y = (size[1] - 1) / 2.0, z = (size[2] - 1) / 2.0, square = radius * radius;
-  return {size,
-          [=](const Node& node) { return (node[1] - y) * (node[1] - y) + (node[2] - z) * (node[2] - z) >= square; },
-          [=](const Node& node, const Node& to) {
-            // From p to p + c the circle is where |p + share c| = radius.
-            const double a = to[1] * to[1] + to[2] * to[2], b = to[1] * (node[1] - y) + to[2] * (node[2] - z);
-            const double c = (node[1] - y) * (node[1] - y) + (node[2] - z) * (node[2] - z) - square;
-            return std::clamp((std::sqrt(b * b - a * c) - b) / a, 0.0, 1.0);
-          }};
+inline RegionPointer<3> tube_region(const std::array<int, 3>& size, double radius) {
+  return extruded(ball_region<2>({(size[1] - 1) / 2.0, (size[2] - 1) / 2.0}, radius), 0, -INFINITY, INFINITY);
 }
 
 }  // namespace rouleau::core

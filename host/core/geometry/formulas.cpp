@@ -1,5 +1,6 @@
 #include "formulas.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -38,6 +39,12 @@ class BallRegion final : public Region<D> {
     const double from_center = inward.norm();
     return {radius_ - from_center, from_center > 0 ? Vec<D>(inward / from_center) : Vec<D>(Vec<D>::Unit(0))};
   }
+  /// Where |place + share by - center| = radius.
+  [[nodiscard]] double share_inside(const Vec<D>& place, const Vec<D>& by) const override {
+    const Vec<D> from = place - center_;
+    const double a = by.squaredNorm(), b = by.dot(from), c = from.squaredNorm() - radius_ * radius_;
+    return std::clamp((std::sqrt(b * b - a * c) - b) / a, 0.0, 1.0);
+  }
 
  private:
   Vec<D> center_;
@@ -47,23 +54,33 @@ class BallRegion final : public Region<D> {
 class Extruded final : public Region<3> {
  public:
   Extruded(RegionPointer<2> section, int axis, double from, double to)
-      : section_(std::move(section)), axis_(axis), from_(from), to_(to) {}
+      : section_(std::move(section)),
+        axis_(axis),
+        first_(axis == 0 ? 1 : 0),
+        second_(axis == 2 ? 1 : 2),
+        from_(from),
+        to_(to) {}
   [[nodiscard]] Distance<3> distance(const Vec<3>& place) const override {
-    const int first = axis_ == 0 ? 1 : 0, second = axis_ == 2 ? 1 : 2;
-    const Distance<2> across = section_->distance({place[first], place[second]});
+    const Distance<2> across = section_->distance(in_section(place));
     const double above = place[axis_] - from_, below = to_ - place[axis_], along = std::min(above, below);
     Vec<3> of_section = Vec<3>::Zero(), of_ends = (above < below ? 1 : -1) * Vec<3>::Unit(axis_);
-    of_section[first] = across.gradient[0], of_section[second] = across.gradient[1];
+    of_section[first_] = across.gradient[0], of_section[second_] = across.gradient[1];
     if (across.value < 0 && along < 0) {
       const double away = std::hypot(across.value, along);
       return {-away, (-across.value * of_section - along * of_ends) / away};
     }
     return across.value < along ? Distance<3>{across.value, of_section} : Distance<3>{along, of_ends};
   }
+  [[nodiscard]] double share_inside(const Vec<3>& place, const Vec<3>& by) const override {
+    if (std::isfinite(from_) || std::isfinite(to_)) return Region::share_inside(place, by);
+    return section_->share_inside(in_section(place), in_section(by));
+  }
 
  private:
+  [[nodiscard]] Vec<2> in_section(const Vec<3>& vector) const { return {vector[first_], vector[second_]}; }
+
   RegionPointer<2> section_;
-  int axis_;
+  int axis_, first_, second_;  ///< along it, and across
   double from_, to_;
 };
 

@@ -7,6 +7,28 @@
 
 namespace rouleau::core {
 
+template <int D>
+double Region<D>::share_inside(const Vec<D>& place, const Vec<D>& by) const {
+  constexpr double exact = 1e-14;
+  constexpr int most_tries = 100;
+  double inside = 0, outside = 1, at_inside = distance(place).value, at_outside = distance(place + by).value;
+  // Regula falsi of Illinois type: distances are nearly linear along a link.
+  for (int i = 0, side = 0; i < most_tries && outside - inside > exact && at_outside < 0; ++i) {
+    const double share = inside + (outside - inside) * at_inside / (at_inside - at_outside);
+    const double value = distance(place + share * by).value;
+    if (value > 0) {
+      inside = share, at_inside = value;
+      if (side == 1) at_outside /= 2;
+      side = 1;
+    } else {
+      outside = share, at_outside = value;
+      if (side == -1) at_inside /= 2;
+      side = -1;
+    }
+  }
+  return outside;
+}
+
 namespace {
 
 template <int D>
@@ -94,29 +116,8 @@ RegionPointer<D> with_images(RegionPointer<D> region, const Domain<D>& domain) {
   return std::make_shared<WithImages<D>>(std::move(region), domain);
 }
 
-template <int D>
-double share_inside(const Region<D>& region, const Vec<D>& place, const Vec<D>& by) {
-  constexpr double exact = 1e-14;
-  constexpr int most_tries = 100;
-  double inside = 0, outside = 1, at_inside = region.distance(place).value,
-         at_outside = region.distance(place + by).value;
-  // Regula falsi of Illinois type: distances are nearly linear along a link.
-  for (int i = 0, side = 0; i < most_tries && outside - inside > exact && at_outside < 0; ++i) {
-    const double share = inside + (outside - inside) * at_inside / (at_inside - at_outside);
-    const double value = region.distance(place + share * by).value;
-    if (value > 0) {
-      inside = share, at_inside = value;
-      if (side == 1) at_outside /= 2;
-      side = 1;
-    } else {
-      outside = share, at_outside = value;
-      if (side == -1) at_inside /= 2;
-      side = -1;
-    }
-  }
-  return outside;
-}
-
+template class Region<2>;
+template class Region<3>;
 template RegionPointer<2> outside_of(RegionPointer<2>);
 template RegionPointer<3> outside_of(RegionPointer<3>);
 template RegionPointer<2> intersection(std::vector<RegionPointer<2>>);
@@ -125,7 +126,5 @@ template RegionPointer<2> union_of(std::vector<RegionPointer<2>>);
 template RegionPointer<3> union_of(std::vector<RegionPointer<3>>);
 template RegionPointer<2> with_images(RegionPointer<2>, const Domain<2>&);
 template RegionPointer<3> with_images(RegionPointer<3>, const Domain<3>&);
-template double share_inside(const Region<2>&, const Vec<2>&, const Vec<2>&);
-template double share_inside(const Region<3>&, const Vec<3>&, const Vec<3>&);
 
 }  // namespace rouleau::core

@@ -24,6 +24,8 @@ class Region {
   /// Its zero is the border. Elsewhere it is the distance, or less where regions are joined: never more. It is continuous;
   /// where two parts of the border are as near the gradient is that of one of them.
   [[nodiscard]] virtual Distance<D> distance(const Vec<D>& place) const = 0;
+  /// Share of the way from a place inside to one outside, `by` away, at which it meets the border: in [0, 1].
+  [[nodiscard]] virtual double share_inside(const Vec<D>& place, const Vec<D>& by) const;
 };
 
 template <int D>
@@ -40,9 +42,5 @@ RegionPointer<D> union_of(std::vector<RegionPointer<D>> regions);
 /// A region with its images along the periodic axes of a domain. It must not reach further than one period from the domain.
 template <int D>
 RegionPointer<D> with_images(RegionPointer<D> region, const Domain<D>& domain);
-
-/// Share of the way from a place inside of a region to one outside, `by` away, at which it meets the border: in (0, 1].
-template <int D>
-double share_inside(const Region<D>& region, const Vec<D>& place, const Vec<D>& by);
 
 }  // namespace rouleau::core

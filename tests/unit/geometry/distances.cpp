@@ -175,7 +175,10 @@ TEST_CASE("A link is cut where the distance vanishes", "[distances]") {
     if (by.isZero() || ball->distance(place).value <= 0 || ball->distance(place + by).value > 0) continue;
     const Vec<3> from = place - Vec<3>(0.1, 0.2, -0.3);  // |from + share by| = radius
     const double a = by.squaredNorm(), b = from.dot(by), c = from.squaredNorm() - radius * radius;
-    CHECK(share_inside<3>(*ball, place, by) == Approx((std::sqrt(b * b - a * c) - b) / a).epsilon(1e-12));
+    const double wanted = (std::sqrt(b * b - a * c) - b) / a;
+    CHECK(ball->share_inside(place, by) == Approx(wanted).epsilon(1e-12));
+    CHECK(ball->Region<3>::share_inside(place, by) ==
+          Approx(wanted).epsilon(1e-12));  // as for regions without a formula
     ++cut;
   }
   CHECK(cut > 50);
