@@ -17,7 +17,7 @@ HOST, TOOLS = SOURCE / "host", SOURCE / "tools"
 MAP = SOURCE / "docs/architecture.md"
 
 # A folder may include those before it (docs/architecture.md); core is what everything else stands on.
-CORE = ["core/domain", "core/model", "core/fluid", "core/membrane", "core/cells", "core/surface", "core/contact", "core/coupling",
+CORE = ["core/domain", "core/model", "core/geometry", "core/fluid", "core/membrane", "core/cells", "core/surface", "core/contact", "core/coupling",
         "core/solver", "core/ranks", "core"]  # some of them are planned
 ORDER = ["base", "json", "units", "hdf5", *CORE, "scene", "shape", "plugin", "plan", "observe", "monitor", "files", "run",
          "report", "trial", "accuracy", "study", "stability", "transport", "command", "conform"]

@@ -29,7 +29,7 @@ struct FluidSetting {
   bool membranes = false;                 ///< keep force and velocity where nodes are active
   int stencil_above = 2;  ///< how far above the node below a membrane's own a stencil reaches; one less below it
   bool viscosity_contrast = false;  ///< keep a relaxation rate where nodes are active
-  /// Walls of any shape, at rest; null: none. In three dimensions only.
+  /// Walls of any shape, at rest; null: none.
   std::shared_ptr<const SolidNodes<D>> solid = {};
 };
 

@@ -280,23 +280,21 @@ typename Fluid<T, Set>::Energetics Fluid<T, Set>::energetics() const {
     if (!links_) {
       function(&task);
     } else {
-      if constexpr (dimension == 3) {
-        mask_.for_fluid(i, [&](int begin, int end) {
-          Task part = task;
-          part.count = end - begin;
-          for (const T*& in : part.in) in += begin;
-          for (auto& beside : part.velocity) {
-            for (const double*& component : beside) component += component != nullptr ? begin : 0;
-          }
-          function(&part);
-        });
-        // A link into a wall counts with what left, too; beyond plane walls that has been taken for what came back.
-        links_->for_links(i, [&](int x, int q, double left, bool plane) {
-          double change = 0;
-          for (int k = 0; k < dimension; ++k) change += Set::velocity[q][k] * u[k][x];
-          sums[dissipation].add(-(plane ? left - static_cast<double>(task.in[q][x]) : left) * change);
-        });
-      }
+      mask_.for_fluid(i, [&](int begin, int end) {
+        Task part = task;
+        part.count = end - begin;
+        for (const T*& in : part.in) in += begin;
+        for (auto& beside : part.velocity) {
+          for (const double*& component : beside) component += component != nullptr ? begin : 0;
+        }
+        function(&part);
+      });
+      // A link into a wall counts with what left, too; beyond plane walls that has been taken for what came back.
+      links_->for_links(i, [&](int x, int q, double left, bool plane) {
+        double change = 0;
+        for (int k = 0; k < dimension; ++k) change += Set::velocity[q][k] * u[k][x];
+        sums[dissipation].add(-(plane ? left - static_cast<double>(task.in[q][x]) : left) * change);
+      });
     }
     if (!setting_.membranes) continue;
     mask_.for_spans(i, [&](const MaskSpan& span) {

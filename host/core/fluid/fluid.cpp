@@ -44,13 +44,7 @@ Fluid<T, Set>::Fluid(const FluidSetting<dimension>& setting, CollisionOperator c
     std::fill_n(relaxation_rate_.row(row), nx(), static_cast<T>(rate_of_row(row)));
   }
   if (driven()) fill_body_force_rows();
-  if (setting.solid) {
-    if constexpr (dimension == 3) {
-      links_ = std::make_unique<SolidLinks<T, Set>>(lattice_, *setting.solid);
-    } else {
-      throw std::invalid_argument("solid nodes are computed in three dimensions only");
-    }
-  }
+  if (setting.solid) links_ = std::make_unique<SolidLinks<T, Set>>(lattice_, *setting.solid);
   if (ranks.several()) make_halos();
 }
 
@@ -201,9 +195,7 @@ std::size_t Fluid<T, Set>::bytes() const {
 template <class T, class Set>
 inline bool Fluid<T, Set>::reaches_border(int i, const Row& row) const {
   constexpr int width = Field<T, dimension>::halo;
-  if constexpr (dimension == 3) {
-    if (links_) return mask_.marked(i);  // spans do not tell of solid nodes
-  }
+  if (links_) return mask_.marked(i);  // spans do not tell of solid nodes
   bool near = false;
   for (int k = 1; k < dimension; ++k) near = near || row[k - 1] < width || row[k - 1] >= lattice_.size(k) - width;
   return mask_.at_side(i) || (near && mask_.any(i));
@@ -328,14 +320,10 @@ void Fluid<T, Set>::step(Range rows) {
     }
     last = row;
     if (even) receive_row(lattice_, row);
-    if constexpr (dimension == 3) {
-      if (links_) links_->before_step(parity_, i);
-    }
+    if (links_) links_->before_step(parity_, i);
     if (fetches && k + 1 < count) fetch_row(i + way, call, row);
     collide_row(i, row, call);
-    if constexpr (dimension == 3) {
-      if (links_) links_->after_step(parity_, i), rest_solid(i, row);
-    }
+    if (links_) links_->after_step(parity_, i), rest_solid(i, row);
     if (frame_moves) add_moving_frame(i, row, call.out);
     add_wall_momentum(lattice_, row, setting_.walls);
     if (even) send_row(lattice_, row);
@@ -348,9 +336,7 @@ void Fluid<T, Set>::step(Range rows) {
 template <class T, class Set>
 void Fluid<T, Set>::settle() {
   for (int i = 0; parity_ == Parity::even && i < lattice_.rows(); ++i) receive_row(lattice_, lattice_.row(i));
-  if constexpr (dimension == 3) {
-    for (int i = 0; links_ && i < lattice_.rows(); ++i) links_->before_step(parity_, i);
-  }
+  for (int i = 0; links_ && i < lattice_.rows(); ++i) links_->before_step(parity_, i);
 }
 
 template <class T, class Set>
@@ -515,7 +501,6 @@ auto Fluid<T, Set>::wall_forces() const -> WallForces<dimension> {
   Sums sums;
   // A population that leaves towards the wall and returns gives the wall c_q f_q - c_-q f_-q = c_q (f_q + f_-q); the
   // one that left is the one that came back plus the wall's own momentum: f_q = f_-q + 6 w_q c_q . u_wall.
-  const bool planes_are_links = setting_.solid && setting_.solid->interpolated();
   for (int i = 0; i < lattice_.rows(); ++i) {
     const Row row = lattice_.row(i);
     const T* in[velocity_count];
@@ -525,31 +510,33 @@ auto Fluid<T, Set>::wall_forces() const -> WallForces<dimension> {
       return (place < 0 && setting_.domain.wall_below(axis)) ||
              (place >= lattice_.size(axis) && setting_.domain.wall_above(axis));
     };
-    for (int q = 1; q < velocity_count && !planes_are_links; ++q) {
+    const auto wall_of = [&](const auto& c) {
+      return !beyond(1, c[1]) ? Sums::other : c[1] < 0 ? Sums::lower : Sums::upper;
+    };
+    // What a plane in direction q gets, times `sign`.
+    const auto add_plane = [&](int q, int x, double sign) {
       const auto& c = Set::velocity[q];
-      const bool y = beyond(1, c[1]);
-      if (!y && !(dimension == 3 && beyond(dimension - 1, c[dimension - 1]))) continue;
-      const typename Sums::Wall wall = !y ? Sums::other : (c[1] < 0 ? Sums::lower : Sums::upper);
-      const double speed = !y ? 0 : (c[1] < 0 ? last_walls_.lower : last_walls_.upper);
-      const T* const returned = in[Set::opposite[q]];
-      const double moved = 6 * Set::weight[q] * c[0] * speed;
+      const typename Sums::Wall wall = wall_of(c);
+      const double speed = wall == Sums::other ? 0 : wall == Sums::lower ? last_walls_.lower : last_walls_.upper;
+      const double force = 2 * static_cast<double>(in[Set::opposite[q]][x]) + 6 * Set::weight[q] * c[0] * speed;
+      for (int k = 0; k < dimension; ++k)
+        if (c[k] != 0) sums.add(wall, k, sign * c[k] * force);
+    };
+    for (int q = 1; q < velocity_count; ++q) {
+      const auto& c = Set::velocity[q];
+      if (!beyond(1, c[1]) && !(dimension == 3 && beyond(dimension - 1, c[dimension - 1]))) continue;
       mask_.for_fluid(i, [&](int begin, int end) {
-        for (int x = begin; x < end; ++x) {
-          const double force = 2 * static_cast<double>(returned[x]) + moved;
-          for (int k = 0; k < dimension; ++k)
-            if (c[k] != 0) sums.add(wall, k, c[k] * force);
-        }
+        for (int x = begin; x < end; ++x) add_plane(q, x, 1);
       });
     }
-    if constexpr (dimension == 3) {
-      if (!links_) continue;
-      links_->for_links(i, [&](int x, int q, double left, bool) {
-        for (int k = 0; k < dimension; ++k) {
-          if (Set::velocity[q][k] != 0)
-            sums.add(Sums::other, k, -Set::velocity[q][k] * (left + static_cast<double>(in[q][x])));
-        }
-      });
-    }
+    if (!links_) continue;
+    links_->for_links(i, [&](int x, int q, double left, bool plane) {
+      if (plane) add_plane(Set::opposite[q], x, -1);  // a wall before it takes all
+      for (int k = 0; k < dimension; ++k) {
+        if (Set::velocity[q][k] != 0)
+          sums.add(Sums::other, k, -Set::velocity[q][k] * (left + static_cast<double>(in[q][x])));
+      }
+    });
   }
   WallForces<dimension> forces = sums.total(ranks_);
   if (!walls_have_acted_)
@@ -671,9 +658,7 @@ void Fluid<T, Set>::take_over(Fluid& other, double factor) {
 
 template <class T, class Set>
 void Fluid<T, Set>::restart_links() {
-  if constexpr (dimension == 3) {
-    if (links_) links_->restart();
-  }
+  if (links_) links_->restart();
 }
 
 template <class T, class Set>

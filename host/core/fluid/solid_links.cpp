@@ -17,6 +17,7 @@ SolidLinks<T, Set>::SolidLinks(Lattice<T, Set>& lattice, const SolidNodes<dimens
     for (int k = 0; k < dimension; ++k) node[k] += by[k];
     return node;
   };
+  constexpr double half_way = 0.5;  // to a plane at the domain's end
   const auto out_of_domain = [&](const Node& node) {
     bool out = false;
     for (int k = 0; k < dimension; ++k) out = out || domain.wrapped(k, node[k]) < 0;
@@ -36,9 +37,9 @@ SolidLinks<T, Set>::SolidLinks(Lattice<T, Set>& lattice, const SolidNodes<dimens
         for (int k = 0; k < dimension; ++k) away[k] = Set::velocity[q][k], toward[k] = -away[k];
         const Node beyond = moved(node, toward), behind = moved(node, away);
         const bool plane = out_of_domain(beyond);
-        if (plane ? !solid.interpolated() : !solid.at(domain, beyond)) continue;
+        if (plane ? !(solid.cut(node, toward) < half_way) : !solid.at(domain, beyond)) continue;
         const bool alone = out_of_domain(behind) || solid.at(domain, behind);
-        const double share = alone ? 0.5 : solid.cut(node, toward);
+        const double share = alone ? half_way : solid.cut(node, toward);
         T* const own = slot(q, x);
         links_.push_back({.own = own,
                           .toward = slot(w, x),
@@ -56,6 +57,8 @@ SolidLinks<T, Set>::SolidLinks(Lattice<T, Set>& lattice, const SolidNodes<dimens
   first_.push_back(links_.size());
 }
 
+template class SolidLinks<float, D2Q9>;
+template class SolidLinks<double, D2Q9>;
 template class SolidLinks<float, D3Q19>;
 template class SolidLinks<double, D3Q19>;
 

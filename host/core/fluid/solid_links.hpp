@@ -51,7 +51,7 @@ class SolidLinks {
   }
 
   /// Calls function(x, q, left, plane) for the links of row i: `left` is what has left along the link in the last step,
-  /// `plane` whether it leads out of the domain, not to a solid node.
+  /// `plane` whether it leads out of the domain, over a wall that lies before the domain's own, not to a solid node.
   template <class Function>
   void for_links(int i, Function function) const {
     for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) {
@@ -81,6 +81,8 @@ class SolidLinks {
   std::vector<std::size_t> first_;  ///< of each row, and the end
 };
 
+extern template class SolidLinks<float, D2Q9>;
+extern template class SolidLinks<double, D2Q9>;
 extern template class SolidLinks<float, D3Q19>;
 extern template class SolidLinks<double, D3Q19>;
 

@@ -60,7 +60,6 @@ class SolidNodes {
     }
     return at(node);
   }
-  [[nodiscard]] bool interpolated() const { return static_cast<bool>(cut_); }
   [[nodiscard]] double cut(const Node& node, const Node& to) const { return cut_ ? cut_(node, to) : 0.5; }
   [[nodiscard]] long fluid_count() const { return fluid_count_; }
 
