@@ -41,8 +41,8 @@ core::Domain<Set::dimension> periodic(Size<Set> size, int times = 1) {
   return {size, everywhere};
 }
 
-/// The middle one of 3 x 3 (x 3) equal blocks that go on periodically. What a neighbour would send is what this block sends
-/// to the other side.
+/// The middle one of 3 x 3 (x 3) equal blocks that go on periodically. What a neighbour would send is what this block
+/// sends to the other side.
 class Mirror final : public core::Transport {
  public:
   explicit Mirror(int dimension) : sent_(dimension == 2 ? 9 : 27) {}

@@ -63,7 +63,8 @@ int main(int argc, char** argv) {
   add("f32", options::bool_switch(&f32), "with --kernel: single precision");
   add("force", options::bool_switch(&force), "with --kernel: every node has a force and writes its velocity");
   add("ranks", options::value(&ranks)->value_name("N"),
-      "one rank of N: what a step of its fluid costs, its neighbours replaced by itself, and a whole step with its cells");
+      "one rank of N: what a step of its fluid costs, its neighbours replaced by itself, and a whole step with its "
+      "cells");
   add("rank", options::value(&rank)->value_name("K"), "with --ranks: which, 0 to N - 1");
   add("scene",
       options::value(&scene)->value_name("FILE")->default_value(ROULEAU_SCENES "/four-cells-shear.json", "four cells"),

@@ -53,8 +53,8 @@ struct Times {
   }
 };
 
-/// The figures of a network, as the first rank finds them while all ranks speak, in pairs of neighbours: they share what
-/// their machine has, its processors, too, where there are more of them.
+/// The figures of a network, as the first rank finds them while all ranks speak, in pairs of neighbours: they share
+/// what their machine has, its processors, too, where there are more of them.
 class Network {
  public:
   /// Every figure takes so many seconds.
@@ -89,8 +89,8 @@ class Network {
         },
         count);
   }
-  /// A wait of a step: all ranks compute for `work` s, and then wait for the two before and the two behind. What it takes
-  /// beside the computing, of each of the ranks that share a processor.
+  /// A wait of a step: all ranks compute for `work` s, and then wait for the two before and the two behind. What it
+  /// takes beside the computing, of each of the ranks that share a processor.
   Times wait(double work, unsigned processors) {
     constexpr int waits = 100;
     const int count = transport_.ranks(), mine = transport_.rank();

@@ -291,8 +291,8 @@ double space_speed(double seconds) {
 
 void space_table(double seconds) {
   std::printf(
-      "\nFluid alone in three dimensions (D3Q19), periodic, one thread, million node updates a second (best of 9 rounds "
-      "that alternate).\nCompiled in: with the next row asked for, as the program does, and without (no fetch)\n"
+      "\nFluid alone in three dimensions (D3Q19), periodic, one thread, million node updates a second (best of 9 "
+      "rounds that alternate).\nCompiled in: with the next row asked for, as the program does, and without (no fetch)\n"
       "  %-10s %-4s %-7s %10s %10s %10s   %8s %8s %8s   %9s\n",
       "nodes", "", "", "plugin", "compiled", "no fetch", "ratio", "(median)", "to that", "bytes/node");
   for (const int n : {32, 64, 128}) {

@@ -242,8 +242,8 @@ double cost_of_all(const scene::Scene& scene, const CoarserLattices& lattices, c
   return steps * (share(fine) + share(coarse) + changes.cost(tau) * share(changes.lattice(fine, coarse)));
 }
 
-/// The companions of a choice: on coarser lattices, and one for each change on the lattice that it is made on. `thinned`:
-/// with fewer outputs.
+/// The companions of a choice: on coarser lattices, and one for each change on the lattice that it is made on.
+/// `thinned`: with fewer outputs.
 void add_runs(const scene::Scene& scene, const CoarserLattices& lattices, const Choice& choice, bool moments,
               bool thinned, Companions& chosen) {
   const int fine = choice.fine, coarse = choice.coarse;

@@ -29,8 +29,8 @@ namespace fs = std::filesystem;
 constexpr const char* new_help = R"(usage: rouleau new KIND NAME [options]
        rouleau new scene [TEMPLATE] [--name NAME] [options]
 
-Makes a folder with the source, the manifest and the CMakeLists.txt of a new model: a small one that works and passes its
-conformance tests as it is, to be changed into yours. Prints the commands that build, test and use it.
+Makes a folder with the source, the manifest and the CMakeLists.txt of a new model: a small one that works and passes
+its conformance tests as it is, to be changed into yours. Prints the commands that build, test and use it.
 KIND is collision, membrane or interaction. NAME is the model's id, a reverse domain name such as org.example.yukawa, or
 a plain name; folder and files have the name of its last part. Nothing is ever overwritten. A membrane law is of
 segments, in two dimensions, or with --dimensions of triangles in three, or of both.

@@ -35,9 +35,9 @@ constexpr const char* run_help = R"(usage: rouleau run SCENE [options]
 Simulates a scene and writes a run directory: summary.json, cells.csv, aggregates.csv, aggregate_sizes.csv, series.csv,
 frames.h5 with frames.xmf (ParaView), log.jsonl, checkpoint.h5 and report.html.
 
-Ctrl-C, SIGTERM, a closed terminal, SIGUSR1, SIGXCPU and --max-time stop a run after a checkpoint. --resume continues from
-the last checkpoint of the directory (without --out: runs/NAME of the scene), however the run ended, and gives the same
-results as a run without the break. If there is no checkpoint, the run begins at the beginning.
+Ctrl-C, SIGTERM, a closed terminal, SIGUSR1, SIGXCPU and --max-time stop a run after a checkpoint. --resume continues
+from the last checkpoint of the directory (without --out: runs/NAME of the scene), however the run ended, and gives the
+same results as a run without the break. If there is no checkpoint, the run begins at the beginning.
 
 Started by mpirun or srun, its processes compute one run together, to the same bytes (docs/ranks.md).
 

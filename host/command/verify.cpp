@@ -14,7 +14,8 @@ constexpr const char* verify_help = R"(usage: rouleau verify DIR
 Compares every file that a finished run has written with the checksums in its summary.json, and that with its own.
 report.html is made from the others and is not among them: rouleau report DIR writes it anew.
 
-Checksums are XXH3 with 64 bits (xxhsum -H3 prints the same): they find accidents, not somebody who changes them as well.
+Checksums are XXH3 with 64 bits (xxhsum -H3 prints the same): they find accidents, not somebody who changes them as
+well.
 
 Example:
   rouleau verify runs/four-cells-shear

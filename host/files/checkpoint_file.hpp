@@ -34,8 +34,9 @@ class CheckpointWriter {
 
   void facts(const nlohmann::json& facts);
   void state(const nlohmann::json& state);
-  /// Begins an array of `rows` times `columns` values, or of so many without columns, at "/name" or "/group/name"; groups are
-  /// made. append() adds its rows, or values, the first ones first; nothing else is written before they are all there.
+  /// Begins an array of `rows` times `columns` values, or of so many without columns, at "/name" or "/group/name";
+  /// groups are made. append() adds its rows, or values, the first ones first; nothing else is written before they are
+  /// all there.
   /// `single`: the file has them in single precision.
   void begin_array(const std::string& path, std::size_t rows, std::size_t columns, bool single = false);
   void begin_array(const std::string& path, std::size_t count);

@@ -12,8 +12,8 @@
 namespace rouleau::monitor {
 
 /// The failure, at the fastest node, if energy in the present stage has grown by more than checks.energy_growth. Not
-/// looked at where an interaction has a state: bonds that form bring energy of their own. All ranks ask together, and get the
-/// same; the first one knows the energy.
+/// looked at where an interaction has a state: bonds that form bring energy of their own. All ranks ask together, and
+/// get the same; the first one knows the energy.
 template <int D>
 std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const core::CellNodes& cells,
                                     const core::Ranks<D>& ranks, const plan::Plan& plan,

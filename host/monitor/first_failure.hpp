@@ -9,8 +9,8 @@
 
 namespace rouleau::monitor {
 
-/// The failure that one rank would have found first: the one with the least `order`, numbers compared one after another. On
-/// all ranks, which ask together; none: no rank has found any. No two ranks' failures have the same order.
+/// The failure that one rank would have found first: the one with the least `order`, numbers compared one after
+/// another. On all ranks, which ask together; none: no rank has found any. No two ranks' failures have the same order.
 template <int D>
 std::optional<Failure> first_failure(const core::Ranks<D>& ranks, std::optional<Failure> mine,
                                      std::array<double, 2> order);

@@ -10,8 +10,8 @@
 
 namespace rouleau::monitor {
 
-/// Compares positions with those at the start of the window; windows follow one another. All ranks call it together; the first
-/// one remembers where all nodes were.
+/// Compares positions with those at the start of the window; windows follow one another. All ranks call it together;
+/// the first one remembers where all nodes were.
 class RestWatch {
  public:
   /// Nobody asks about rest.

@@ -61,7 +61,8 @@ std::vector<CellContact> find_touching_cells(const core::Surfaces& s, const core
   for (const int cell : s.known_cells()) {
     all.find(cell, s, of_cell);
     for (const core::TriangleContact& contact : of_cell) {
-      // A pair is known by its first cell and the image of the second; a cell and its own image are seen from both sides.
+      // A pair is known by its first cell and the image of the second; a cell and its own image are seen from both
+      // sides.
       const bool turned = contact.other < cell || (contact.other == cell && contact.shift < core::ImageShift{});
       const core::ImageShift image = turned ? -contact.shift : contact.shift;
       const int a = turned ? contact.other : cell, b = turned ? cell : contact.other;

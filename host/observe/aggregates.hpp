@@ -18,8 +18,8 @@ struct CellContact {
   double contact_length;   ///< rest length of a's nodes nearer to b than `reach`; of surfaces, their rest area
 };
 
-/// All pairs nearer than `reach` (lattice units) whose first cell is this rank's, if it knows all that are so near. In the
-/// order of the first cells.
+/// All pairs nearer than `reach` (lattice units) whose first cell is this rank's, if it knows all that are so near. In
+/// the order of the first cells.
 std::vector<CellContact> find_touching_cells(const core::Membranes& membranes, const core::Domain<2>& domain,
                                              double reach);
 
@@ -27,8 +27,8 @@ std::vector<CellContact> find_touching_cells(const core::Membranes& membranes, c
 std::vector<CellContact> find_touching_cells(const core::Surfaces& surfaces, const core::Domain<3>& domain,
                                              double reach);
 
-/// Of each of this rank's cells the smallest gap to any other or to an image (spacings), looked for in growing neighbourhoods
-/// up to the size of the box; infinite when there is none. All ranks together.
+/// Of each of this rank's cells the smallest gap to any other or to an image (spacings), looked for in growing
+/// neighbourhoods up to the size of the box; infinite when there is none. All ranks together.
 std::vector<double> smallest_gaps(core::Surroundings<2>& around, const core::Domain<2>& domain);
 /// The same of surfaces, up to half of the shortest period.
 std::vector<double> smallest_gaps(core::Surroundings<3>& around, const core::Domain<3>& domain);

@@ -46,16 +46,16 @@ class Columns {
   std::vector<CellFreeLayer> columns_;
 };
 
-/// Calls visit(i) for the whole numbers from `least` to `most`. For none where they lie further apart than `longest`: the last
-/// state of a run that blew up may hold anything.
+/// Calls visit(i) for the whole numbers from `least` to `most`. For none where they lie further apart than `longest`:
+/// the last state of a run that blew up may hold anything.
 template <class Visit>
 void for_whole_numbers(double least, double most, double longest, Visit visit) {
   if (!(most - least < longest && std::abs(least) < 1e9)) return;
   for (double i = std::ceil(least); i <= most; ++i) visit(static_cast<int>(i));
 }
 
-/// Calls meet(i, v, w) for each whole number i at which the line from (a, va) to (b, vb) has values, from v to w: the same,
-/// but for a line along which a does not change.
+/// Calls meet(i, v, w) for each whole number i at which the line from (a, va) to (b, vb) has values, from v to w: the
+/// same, but for a line along which a does not change.
 template <class Meet>
 void at_whole_numbers(double a, double va, double b, double vb, double longest, Meet meet) {
   for_whole_numbers(std::min(a, b), std::max(a, b), longest, [&](int i) {
@@ -64,8 +64,8 @@ void at_whole_numbers(double a, double va, double b, double vb, double longest, 
   });
 }
 
-/// Calls meet(i, p, q) for each plane x = i in which a triangle of this rank's cells has a line, from p to q: (y, z). A plane
-/// through a node belongs to what lies beyond it.
+/// Calls meet(i, p, q) for each plane x = i in which a triangle of this rank's cells has a line, from p to q: (y, z). A
+/// plane through a node belongs to what lies beyond it.
 template <class Meet>
 void for_lines_across(const core::Surfaces& surfaces, int longest, Meet meet) {
   using Place = std::array<double, 2>;
@@ -130,8 +130,8 @@ CellFreeLayer cell_free_layer_in_tube(const core::Surfaces& surfaces, const core
   for_lines_across(surfaces, domain.size[0], [&](int x, const auto& p, const auto& q) {
     const double py = p[0] - axis_y, pz = p[1] - axis_z, dy = q[0] - p[0], dz = q[1] - p[1];
     if (!(std::hypot(py, pz) < 1e9 && std::hypot(dy, dz) < 2 * radius)) return;
-    // The shorter way around the axis from one end to the other; rays are numbered by their angle with z, so that the upper half
-    // comes first.
+    // The shorter way around the axis from one end to the other; rays are numbered by their angle with z, so that the
+    // upper half comes first.
     const double begin = std::atan2(py, pz);
     double end = std::atan2(py + dy, pz + dz);
     if (end - begin > std::numbers::pi) end -= 2 * std::numbers::pi;

@@ -8,8 +8,8 @@
 
 namespace rouleau::observe {
 
-/// Thickness of the layers at the walls across y, spacings: in each column of the lattice the distance from the wall to the
-/// nearest membrane, averaged over the columns (edge of the core as in Fedosov, Caswell, Popel and Karniadakis,
+/// Thickness of the layers at the walls across y, spacings: in each column of the lattice the distance from the wall to
+/// the nearest membrane, averaged over the columns (edge of the core as in Fedosov, Caswell, Popel and Karniadakis,
 /// Microcirculation 17, 2010). Half the height counts where no membrane is nearer.
 /// All ranks together, of all cells; the first one gets it.
 struct CellFreeLayer {
@@ -23,9 +23,9 @@ CellFreeLayer cell_free_layer(const core::Membranes& membranes, const core::Doma
 CellFreeLayer cell_free_layer(const core::Surfaces& surfaces, const core::Domain<3>& domain,
                               const core::Ranks<3>& ranks = {});
 
-/// At the wall of a tube of this radius, spacings, about the middle axis along x: along rays from the axis, a spacing apart at
-/// the wall, in each layer of nodes across x. Lower: the half of the wall with y below the axis. The radius counts where a
-/// ray meets no membrane.
+/// At the wall of a tube of this radius, spacings, about the middle axis along x: along rays from the axis, a spacing
+/// apart at the wall, in each layer of nodes across x. Lower: the half of the wall with y below the axis. The radius
+/// counts where a ray meets no membrane.
 CellFreeLayer cell_free_layer_in_tube(const core::Surfaces& surfaces, const core::Domain<3>& domain, double radius,
                                       const core::Ranks<3>& ranks = {});
 

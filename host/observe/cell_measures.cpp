@@ -15,7 +15,8 @@ constexpr double roundest = 1e-6;
 /// The angle of the long axis of a cell, if it has one.
 double long_axis(double angle, double deformation) { return deformation > roundest ? angle : std::nan(""); }
 
-/// Distance of a surface to the nearest wall, spacings, negative beyond it; NaN without walls. `tube_radius`: 0 without one.
+/// Distance of a surface to the nearest wall, spacings, negative beyond it; NaN without walls. `tube_radius`: 0 without
+/// one.
 double wall_gap(const core::Surfaces& surfaces, int cell, const core::Domain<3>& domain, double tube_radius) {
   if (tube_radius > 0) return tube_radius - core::farthest_from_axis(surfaces, cell, domain);
   const core::CellRange& range = surfaces.cells[cell];

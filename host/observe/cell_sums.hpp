@@ -9,7 +9,8 @@
 
 namespace rouleau::observe {
 
-/// Each of the sums of what shares(cell), a std::array<double, count>, gives of every rank's cells. All ranks ask together.
+/// Each of the sums of what shares(cell), a std::array<double, count>, gives of every rank's cells. All ranks ask
+/// together.
 template <std::size_t count, int D, class Shares>
 std::array<double, count> sums_over(const core::CellNodes& cells, const core::Ranks<D>& ranks, Shares shares) {
   std::vector<core::ExactSum> sums(count);

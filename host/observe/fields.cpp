@@ -81,8 +81,8 @@ struct KnownRows {
   }
 };
 
-/// By central differences over two spacings. Beyond a wall half a spacing away the velocity is such that its mean with that
-/// of the node before it is the wall's.
+/// By central differences over two spacings. Beyond a wall half a spacing away the velocity is such that its mean with
+/// that of the node before it is the wall's.
 template <int D>
 class Vorticity {
  public:
@@ -145,7 +145,8 @@ class Vorticity {
   std::array<const core::Moments<D>*, D> below_{}, above_{};  ///< beside it along each axis but the first; null: a wall
 };
 
-/// Field::give of what `fill(row, known, to)` computes, so many numbers for each stored row, from the lattice's values that
+/// Field::give of what `fill(row, known, to)` computes, so many numbers for each stored row, from the lattice's values
+/// that
 /// `gather(bands, take)` brings to the first rank: V of a node. `around`: rows need those beside them.
 template <class V, int D, class Gather, class Fill>
 auto giver(const StoredRows<D>& rows, bool around, std::size_t bytes, std::size_t numbers, Gather gather, Fill fill) {

@@ -19,8 +19,8 @@ class RheologyHistory {
   ///   means              over the second half of the stage, {from_s, outputs, and for each column of series.csv that
   ///                      has_means (observables.hpp) {mean, error, deviation, trend}}: mean in time, by straight lines
   ///                      between outputs that have a value, its standard error from four equal parts (null: too few
-  ///                      outputs), standard deviation of the outputs, and "rising" or "falling" where they do so over that
-  ///                      half; null where no output has one
+  ///                      outputs), standard deviation of the outputs, and "rising" or "falling" where they do so over
+  ///                      that half; null where no output has one
   ///   dissociation       of each aggregate of two or more cells at the stage's start, {members, parted, separate};
   ///                      each of the two {strain, strain_before, time_s} from the start of the stage, or null: at
   ///                      `strain` the output after which its members never again were all in one aggregate (parted),

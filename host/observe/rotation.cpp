@@ -51,8 +51,8 @@ Unwrapping unwrap(const std::vector<CellContact>& contacts, const Aggregates& ag
   return result;
 }
 
-/// Indices of points among which the two are that lie farthest apart, in their order: the corners of the convex hull, by
-/// its lower and its upper chain (Andrew 1979), and all of few.
+/// Indices of points among which the two are that lie farthest apart, in their order: the corners of the convex hull,
+/// by its lower and its upper chain (Andrew 1979), and all of few.
 std::vector<std::size_t> outermost(const std::vector<Eigen::Vector2d>& points) {
   constexpr std::size_t few = 32;
   std::vector<std::size_t> order(points.size());

@@ -57,14 +57,14 @@ struct OutlineSnapshot {
 
 /// A field on the nodes of the fluid or of the membranes, given some at a time so that nobody holds all of it.
 struct Field {
-  /// Values of the next nodes: of the fluid, those that the scene wants (FieldStorage) in whole rows, x fastest; of membranes,
-  /// cell after cell. The components of a node beside each other.
+  /// Values of the next nodes: of the fluid, those that the scene wants (FieldStorage) in whole rows, x fastest; of
+  /// membranes, cell after cell. The components of a node beside each other.
   using Take = std::function<void(const std::vector<double>& values)>;
   std::string name;    ///< velocity, density (relative deviation from the mean), viscosity, vorticity; MembraneSnapshot
   std::string unit;    ///< m/s, 1, Pa s, 1/s
   int components = 1;  ///< 3: a vector, whose last component is 0 in two dimensions
-  /// Calls take() on the first rank until it has had all; rows count over y, then over z. All ranks together, and before the
-  /// next step.
+  /// Calls take() on the first rank until it has had all; rows count over y, then over z. All ranks together, and
+  /// before the next step.
   std::function<void(const Take& take)> give;
 };
 
@@ -92,7 +92,8 @@ struct FieldSnapshot {
   [[nodiscard]] bool empty() const { return nx == 0; }
 };
 
-/// Energies and powers per depth, in three dimensions that of the domain along z (docs: physics, energy); NaN where the scene has no such thing, or nobody tells it.
+/// Energies and powers per depth, in three dimensions that of the domain along z (docs: physics, energy); NaN where the
+/// scene has no such thing, or nobody tells it.
 struct EnergySnapshot {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   double kinetic = none, elastic = none, bending = none, interaction = none, total = none;  ///< J/m
@@ -101,8 +102,8 @@ struct EnergySnapshot {
   std::string unknown;  ///< why the total is not known; empty: it is
 };
 
-/// Up to so many cells a run remembers of each at every output what its summary says of it: of more, that would take more
-/// memory than anything else. Tables have all of them.
+/// Up to so many cells a run remembers of each at every output what its summary says of it: of more, that would take
+/// more memory than anything else. Tables have all of them.
 inline constexpr std::size_t most_cells_remembered = 10'000;
 
 struct Snapshot {

@@ -15,8 +15,8 @@ constexpr std::array<KernelFacts, 5> kernels{{
      "it lets ten times less stiffness pass than peskin4 before nodes zigzag, which the semi-implicit step does not "
      "change, and leaks twice the area"},
     {core::KernelKind::linear2, "linear2", 0, 0.013, 0.0066, nowhere,
-     "it lets seventy times less stiffness pass than peskin4, and cells leak silently beyond that limit; it is here for "
-     "comparison"},
+     "it lets seventy times less stiffness pass than peskin4, and cells leak silently beyond that limit; it is here "
+     "for comparison"},
     {core::KernelKind::sharp6, "sharp6", 0, 0.36, 0.22, 0.9, ""},
 }};
 

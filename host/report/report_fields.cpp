@@ -105,7 +105,8 @@ class FieldRows {
   FieldRows(const hdf5::File& file, const files::FieldNodes& grid, std::string dataset)
       : file_(file), grid_(grid), dataset_(std::move(dataset)) {}
 
-  /// Calls visit(y) for every row from below. at() then knows that row; `around`: also those that vorticity needs there.
+  /// Calls visit(y) for every row from below. at() then knows that row; `around`: also those that vorticity needs
+  /// there.
   template <class Visit>
   void for_each(bool around, const Visit& visit) {
     const std::size_t beside = around ? 2 : 0;

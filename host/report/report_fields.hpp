@@ -21,8 +21,8 @@ struct ScalarField {
 /// Outputs of a frames.h5 whose fields a report can draw (velocity or vorticity), at most `most`, evenly thinned.
 std::vector<std::size_t> field_outputs(const std::filesystem::path& frames, std::size_t most);
 
-/// {nx, ny, box_um, outputs, quantities, velocity, derived} of the shown outputs `selection` that have fields; null when none
-/// has.
+/// {nx, ny, box_um, outputs, quantities, velocity, derived} of the shown outputs `selection` that have fields; null
+/// when none has.
 ///   box_um       [x, y, width, height] of what the blocks cover: the domain, or the region that was written
 ///   outputs      positions in `selection`
 ///   quantities   [{name: speed | vorticity, unit, signed, scale, clipped, values: [base64 of nx x ny bytes]}]: byte b
@@ -34,8 +34,8 @@ std::vector<std::size_t> field_outputs(const std::filesystem::path& frames, std:
 ///   derived      vorticity was computed here, from the velocity
 nlohmann::json field_data(const std::filesystem::path& frames, const std::vector<std::size_t>& selection);
 
-/// Means over blocks of a field's nodes, of which there are at most `most`; the blocks have the shape of the domain's nodes.
-/// The field is given row by row, from below, so that nobody holds all of it.
+/// Means over blocks of a field's nodes, of which there are at most `most`; the blocks have the shape of the domain's
+/// nodes. The field is given row by row, from below, so that nobody holds all of it.
 class BlockMeans {
  public:
   BlockMeans(std::size_t nx, std::size_t ny, std::size_t most);

@@ -14,9 +14,9 @@ namespace rouleau::report {
 inline constexpr double micro = 1e6;
 
 /// {size_um, periodic_y, quantum_um, first, origin_um, nodes, tension} of the outputs `selection`, one node in `stride`
-/// of every cell: nodes[k] is, for the k-th of them, base64 of little-endian int16 x, y of every node, in quanta from its
-/// cell's origin; tension {scale_N_per_m, values} of int8 for each node, the tension of the segment that begins there
-/// over the scale times 127. Null when there are no cells, or when the number of their nodes changes.
+/// of every cell: nodes[k] is, for the k-th of them, base64 of little-endian int16 x, y of every node, in quanta from
+/// its cell's origin; tension {scale_N_per_m, values} of int8 for each node, the tension of the segment that begins
+/// there over the scale times 127. Null when there are no cells, or when the number of their nodes changes.
 nlohmann::json outline_data(const files::FrameReader& reader, const std::vector<std::size_t>& selection,
                             std::size_t stride);
 

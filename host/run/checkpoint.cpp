@@ -93,7 +93,8 @@ core::ContactVariable contact_variable(const Json& d) {
   return {d.at("potential"), d.at("model"), d.at("name"), d.at("unit_si"), d.at("initial")};
 }
 
-/// Writes what the owners of cells know of them, in the order of the cells: all ranks together, the first one has the file.
+/// Writes what the owners of cells know of them, in the order of the cells: all ranks together, the first one has the
+/// file.
 template <int D>
 class CellArrays {
  public:
@@ -115,8 +116,8 @@ class CellArrays {
       if (!values.empty()) of_cell.push_back(values[c]);
     });
   }
-  /// What interactions remember: which pairs of cells, or of cells and walls, and for each of them the next so many values
-  /// of one array.
+  /// What interactions remember: which pairs of cells, or of cells and walls, and for each of them the next so many
+  /// values of one array.
   Json contacts(const char* path, const core::ContactMemory& memory) {
     struct Pair {
       int cell, variable, other;

@@ -61,9 +61,9 @@ struct Restored {
 /// Finds this rank's part in the cells with these boxes, and tells the cells (GhostCells::set_parts).
 template <int D>
 using TakePart = std::function<void(const std::vector<core::BoundingBox<D>>& boxes)>;
-/// Into the state and the cells of the same scene; `block`: of the lattice, that the solver will compute; `take_part`: null
-/// without other ranks. No memory is taken for what others alone know of cells. Throws Error(input_output) where the
-/// checkpoint does not fit.
+/// Into the state and the cells of the same scene; `block`: of the lattice, that the solver will compute; `take_part`:
+/// null without other ranks. No memory is taken for what others alone know of cells. Throws Error(input_output) where
+/// the checkpoint does not fit.
 template <int D>
 Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, const plan::Plan& plan,
                  const core::Box<D>& block, RunState& state, typename core::AnySolver<D>::Cells& cells,

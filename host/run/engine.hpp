@@ -30,15 +30,16 @@ class Engine {
 
   /// The cells as the scene places them, of which the observer takes note, for the first stage.
   [[nodiscard]] Start place_cells(observe::Observer& observer);
-  /// The cells as a checkpoint has them; the run's state is set to what it says, and `mark` to how far the directory's files
-  /// had come. Throws Error(input_output) where it does not fit.
+  /// The cells as a checkpoint has them; the run's state is set to what it says, and `mark` to how far the directory's
+  /// files had come. Throws Error(input_output) where it does not fit.
   [[nodiscard]] Start restore_cells(const std::shared_ptr<const files::CheckpointReader>& reader, RunState& state,
                                     files::DirectoryMark& mark);
   /// A solver takes the place of the one before.
   void begin(Start start);
   /// The same for another stage, which goes on with cells and fluid of the one before.
   void begin_stage(int stage);
-  /// Between two steps, whose messages have been taken: other blocks for the same state, so many steps after the stage's start.
+  /// Between two steps, whose messages have been taken: other blocks for the same state, so many steps after the
+  /// stage's start.
   /// `seconds[r]`: what rank r has computed for since all began to measure.
   void cut_again(int stage, long stage_step, const std::vector<double>& seconds);
 

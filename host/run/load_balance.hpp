@@ -9,15 +9,16 @@
 
 namespace rouleau::run {
 
-/// All ranks measure how long they compute, look at the same steps with the same numbers, and so come to the same answer.
+/// All ranks measure how long they compute, look at the same steps with the same numbers, and so come to the same
+/// answer.
 class LoadBalance {
  public:
   static constexpr double tolerance = 1.15;  ///< of the slowest rank's time over the mean
   static constexpr double patience = 10;     ///< what waiting has cost, over what a cut takes
   static constexpr int period = 16;          ///< looks: what a machine does for a moment is no reason
 
-  /// Since begin() the slowest rank has computed for so long, and ranks on the average; cutting the lattice anew takes `cut`.
-  /// Seconds.
+  /// Since begin() the slowest rank has computed for so long, and ranks on the average; cutting the lattice anew takes
+  /// `cut`. Seconds.
   void look(double slowest, double mean, double cut) {
     slowest_ = slowest, mean_ = mean;
     ++looks_;
@@ -47,7 +48,8 @@ class Balance {
   }
   /// A solver for other blocks, or another stage, has been made in so many seconds.
   void made(double seconds) { cut_s_ = seconds, cut_at_ = never; }
-  /// Whether some ranks wait so long for others that they are to get new blocks before the next step; `always`: they are.
+  /// Whether some ranks wait so long for others that they are to get new blocks before the next step; `always`: they
+  /// are.
   template <int D>
   void look(const core::Ranks<D>& ranks, double computed, long step, bool always) {
     const double own = computed - computed_;

@@ -46,8 +46,8 @@ int terminal_width() {
 
 double within_one(double fraction) { return std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 0.0; }
 
-/// The numbers of a line in their order, each with what it is worth where room is short. Their widths do not change from
-/// one line to the next.
+/// The numbers of a line in their order, each with what it is worth where room is short. Their widths do not change
+/// from one line to the next.
 struct Part {
   std::string text;
   int worth;

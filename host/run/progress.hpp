@@ -22,8 +22,8 @@ struct ProgressState {
 /// What the rest takes at the speed of the steps so far; not a number before the first.
 double remaining_s(const ProgressState& state, long steps_so_far, double seconds);
 
-/// One line of at most `width` characters for a terminal. Where all of it has no room, what says least is left out: first
-/// the Mach number, then the area drift, the speed, the rouleaux, and the bar after these.
+/// One line of at most `width` characters for a terminal. Where all of it has no room, what says least is left out:
+/// first the Mach number, then the area drift, the speed, the rouleaux, and the bar after these.
 /// rate: steps per second; remaining_s: not finite where it is not known.
 std::string progress_line(const ProgressState& state, double rate, double remaining_s, std::size_t width);
 

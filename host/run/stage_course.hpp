@@ -8,8 +8,8 @@
 namespace rouleau::run {
 
 /// Of whichever stage of the plan the state is in. Whoever steps calls count_to() and then end() before the forces of a
-/// step that next() has asked for, and look() once they are known; ending() may be asked for at any time between two steps. All
-/// ranks call it together, and get the same.
+/// step that next() has asked for, and look() once they are known; ending() may be asked for at any time between two
+/// steps. All ranks call it together, and get the same.
 class StageCourse {
  public:
   /// Both must outlive it.

@@ -90,8 +90,8 @@ struct Summary {
 /// Numbers that are not finite are null once it is written.
 nlohmann::json to_json(const Summary& summary);
 
-/// How the run ended, in a few words: "completed after 120 steps"; also where the limit of steps cut it short, which the
-/// status does not tell.
+/// How the run ended, in a few words: "completed after 120 steps"; also where the limit of steps cut it short, which
+/// the status does not tell.
 std::string outcome(const Summary& summary);
 
 }  // namespace rouleau::run

@@ -23,7 +23,8 @@ struct QuantityColumn {
 /// What is wrong, and with which column; none: with all of them. Throws.
 using RefuseColumn = std::function<void(std::optional<std::size_t> column, const std::string& problem)>;
 
-/// The columns of a table that say something about cells. Capital letters of a name mean the same; those of a unit do not.
+/// The columns of a table that say something about cells. Capital letters of a name mean the same; those of a unit do
+/// not.
 struct CellColumns {
   std::optional<std::size_t> type, step;
   std::array<std::optional<QuantityColumn>, 3> place;  ///< along x, y and z

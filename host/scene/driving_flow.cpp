@@ -11,8 +11,8 @@ bool walls_move(const Stage& stage) {
          stage.oscillation.mean_wall_speed != 0;
 }
 
-// With a stress S - G y and fluidity 1/mu, both walls at rest give S = G B/A, and the flow rate is G (C - B^2/A), where A, B
-// and C are the integrals of 1/mu, y/mu and y^2/mu over the height.
+// With a stress S - G y and fluidity 1/mu, both walls at rest give S = G B/A, and the flow rate is G (C - B^2/A), where
+// A, B and C are the integrals of 1/mu, y/mu and y^2/mu over the height.
 double channel_viscosity(const Scene& scene) {
   if (scene.fluid.layers.empty()) return scene.fluid.viscosity;
   const double height = scene.domain.size.y();

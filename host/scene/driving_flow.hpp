@@ -24,8 +24,8 @@ double driving_part(const Vector& force, const Domain& domain);
 /// fluid without layers that the same pressure gradient drives through at the same rate.
 double channel_viscosity(const Scene& scene);
 
-/// Flow rate of a channel with walls across z, too, or of a tube, over that of a plane channel in the whole domain, at the
-/// same pressure gradient and viscosity; 1 without such walls.
+/// Flow rate of a channel with walls across z, too, or of a tube, over that of a plane channel in the whole domain, at
+/// the same pressure gradient and viscosity; 1 without such walls.
 double duct_share(const Domain& domain);
 
 /// Viscosities of the suspending fluid, Pa s: the least and the largest, layers included.
@@ -36,8 +36,8 @@ ViscosityRange viscosity_range(const FluidProperties& fluid);
 
 /// Shear rate that a stage's numbers are made with, 1/s: that of the walls where they shear; else that of the developed
 /// flow between them, |du/dy| averaged over the height, G H / (4 mu), which is its largest velocity over half the
-/// height (in a tube, G R / (4 mu), over the radius). The largest of an oscillation. 0 at rest, and where no wall holds a
-/// flow that is driven.
+/// height (in a tube, G R / (4 mu), over the radius). The largest of an oscillation. 0 at rest, and where no wall holds
+/// a flow that is driven.
 double mean_shear_rate(const Stage& stage, const Scene& scene);
 
 /// Strain that a flow from a start at rest is late by, for good, for each unit of density_factor; 0 where it starts
@@ -46,10 +46,10 @@ double mean_shear_rate(const Stage& stage, const Scene& scene);
 /// H^2/(10 nu) for the flow rate of a driven channel and R^2/(6 nu) for that of a tube, nu the kinematic viscosity.
 double start_up_strain(const Stage& stage, const Scene& scene);
 
-/// Phase in rad, for each unit of density_factor, by which the fluid's inertia delays an oscillation: of the shear rate in
-/// the middle between walls that oscillate against each other, the velocity there between walls that do so together, the
-/// flow rate of a channel (1/6, 1/2 and 2/5 of the square of the Womersley number, made with half the height, while that
-/// is small; of a tube, made with its radius, 1/6). 0 where nothing oscillates, and where no wall holds the flow.
+/// Phase in rad, for each unit of density_factor, by which the fluid's inertia delays an oscillation: of the shear rate
+/// in the middle between walls that oscillate against each other, the velocity there between walls that do so together,
+/// the flow rate of a channel (1/6, 1/2 and 2/5 of the square of the Womersley number, made with half the height, while
+/// that is small; of a tube, made with its radius, 1/6). 0 where nothing oscillates, and where no wall holds the flow.
 double oscillation_delay(const Stage& stage, const Scene& scene);
 
 /// Largest Mach number of moving walls without a warning. Without convective inertia the fluid's equations are linear

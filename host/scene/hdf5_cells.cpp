@@ -1,4 +1,5 @@
-// Cells from HDF5 datasets of one dimension in a file's root, each called as a column of a CSV file is, all equally long.
+// Cells from HDF5 datasets of one dimension in a file's root, each called as a column of a CSV file is, all equally
+// long.
 #include <cmath>
 
 #include "base/error.hpp"

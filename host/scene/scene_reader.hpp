@@ -45,14 +45,14 @@ inline constexpr AllowedRange angle{-1e3, 1e3, -7.0, 7.0, "deg"};               
 /// Thrown for a value that is wrong by the schema, or not there because of that: its fault has been found.
 struct Misread {};
 
-/// Every member throws Error(bad_input) for the value it is asked for; within attempt() of a reader that collects faults
-/// that ends the attempt alone.
+/// Every member throws Error(bad_input) for the value it is asked for; within attempt() of a reader that collects
+/// faults that ends the attempt alone.
 class SceneFields {
  public:
   explicit SceneFields(const json::Document& document) : document_(document) {}
 
-  /// Collects faults. Those that are there already are the schema's: the document need not fit it then, and what follows
-  /// from them is not said.
+  /// Collects faults. Those that are there already are the schema's: the document need not fit it then, and what
+  /// follows from them is not said.
   SceneFields(const json::Document& document, Faults& faults)
       : document_(document), faults_(&faults), of_schema_(faults.size()) {}
 
@@ -80,8 +80,8 @@ class SceneFields {
   [[nodiscard]] const nlohmann::json& at(const std::string& pointer) const;
   [[nodiscard]] bool has(const std::string& pointer) const;
 
-  /// SI value of a quantity, or of a plain number; `unit` is what is wanted. A fault where it is outside the range: then
-  /// NaN, if this collects.
+  /// SI value of a quantity, or of a plain number; `unit` is what is wanted. A fault where it is outside the range:
+  /// then NaN, if this collects.
   [[nodiscard]] double quantity(const std::string& pointer, std::string_view unit, AllowedRange range) const;
   [[nodiscard]] double quantity_or(const std::string& pointer, std::string_view unit, AllowedRange range,
                                    double otherwise) const;
@@ -121,8 +121,8 @@ class SceneFields {
   [[nodiscard]] int cell_type(const std::string& pointer, const std::vector<CellType>& types,
                               const std::vector<std::string>& others = {}) const;
 
-  /// Refuses the object at `pointer` where it lacks a key that only scenes with open numerics may leave out; `otherwise`
-  /// says what those do.
+  /// Refuses the object at `pointer` where it lacks a key that only scenes with open numerics may leave out;
+  /// `otherwise` says what those do.
   void require(const std::string& pointer, const std::string& key, const std::string& otherwise) const;
 
   /// Refuses `more` cells beside `cells` where there would be more than can be computed.

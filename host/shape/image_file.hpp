@@ -13,8 +13,8 @@ struct GreyPicture {
   std::vector<double> light;  ///< row after row, the lowest first
 };
 
-/// A PNG file of any kind. Throws what InputFile does, and Error(bad_input) for what is no picture, is damaged, or has more than
-/// 10^8 pixels.
+/// A PNG file of any kind. Throws what InputFile does, and Error(bad_input) for what is no picture, is damaged, or has
+/// more than 10^8 pixels.
 GreyPicture read_png(const std::filesystem::path& file);
 
 }  // namespace rouleau::shape

@@ -30,9 +30,9 @@ inline double poiseuille_start(double y, double t) {
   return u;
 }
 
-/// Start-up of the flow that a constant force drives through a tube at rest, in units of the steady maximum; `distance` from
-/// the axis in radii, t in radius^2/(kinematic viscosity). Steady for infinite t; 0 beyond the wall. Szymanski, J. Math.
-/// Pures Appl. 11 (1932).
+/// Start-up of the flow that a constant force drives through a tube at rest, in units of the steady maximum; `distance`
+/// from the axis in radii, t in radius^2/(kinematic viscosity). Steady for infinite t; 0 beyond the wall. Szymanski, J.
+/// Math. Pures Appl. 11 (1932).
 inline double tube_start(double distance, double t) {
   if (!(distance < 1)) return 0;
   double u = 1 - distance * distance;

@@ -59,10 +59,9 @@ std::string who(const Launch& launch) {
 fs::path library_for(const Launch& launch) {
   if (const char* named = ::secure_getenv("ROULEAU_TRANSPORT"); named != nullptr && *named != '\0') return named;
   if (launch.mpi.empty())
-    refuse(
-        launch, "which has given it no way to find the others",
-        "choose one with srun's option mpi: pmix with Open MPI, pmi2 with MPICH; or set ROULEAU_LAUNCHER=none for a process "
-        "that is to be alone");
+    refuse(launch, "which has given it no way to find the others",
+           "choose one with srun's option mpi: pmix with Open MPI, pmi2 with MPICH; or set ROULEAU_LAUNCHER=none for a "
+           "process that is to be alone");
   fs::path library = installation().programs / ("transport-" + launch.mpi + ".so");
   std::error_code error;
   if (!fs::exists(library, error))

@@ -1,6 +1,7 @@
-/* What the program and a transport library give each other: messages between the ranks of a run. The program has no symbol
- * of MPI; it opens one of the libraries that mpi.c is compiled into, and only where a launcher has started several ranks.
- * All functions belong to the thread that has opened the library. What MPI itself finds wrong ends the job. */
+/* What the program and a transport library give each other: messages between the ranks of a run. The program has no
+ * symbol of MPI; it opens one of the libraries that mpi.c is compiled into, and only where a launcher has started
+ * several ranks. All functions belong to the thread that has opened the library. What MPI itself finds wrong ends the
+ * job. */
 #pragma once
 
 /* NOLINTBEGIN: C, which C++ reads as well */

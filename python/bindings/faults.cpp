@@ -20,8 +20,8 @@ namespace {
 constexpr std::array fatal_signals = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 std::array<struct sigaction, fatal_signals.size()> handlers_before;
 
-/// Only calls that are allowed in a handler. Of threads that come to their end together one speaks, and ends the process
-/// while the others wait.
+/// Only calls that are allowed in a handler. Of threads that come to their end together one speaks, and ends the
+/// process while the others wait.
 void accuse(const ForeignCall& call, const char* deed) {
   static std::atomic<bool> spoken = false;
   if (spoken.exchange(true)) ::sleep(10);

@@ -1,5 +1,5 @@
-/* Layout of every struct of the plugin interface on machines with 64-bit pointers (LP64), as released in version 1.0, and with
- * what 1.1 appends.
+/* Layout of every struct of the plugin interface on machines with 64-bit pointers (LP64), as released in version 1.0,
+ * and with what 1.1 appends.
  * A failure here means that plugins which are out in the world break: append fields, never move or resize them. An
  * appended field gets its line here; the sizes grow with it. */
 #ifndef ROULEAU_TESTS_ABI_LAYOUT_H

@@ -31,8 +31,8 @@ std::string quantity(const std::string& name, double value, const std::string& u
   text << '"' << name << R"(": ")" << value << ' ' << unit << '"';
   return text.str();
 }
-/// In-plane elasticity, with a bending stiffness of 0.004 G a^2, which takes 2 to 3 % off the deformation: about what the lattice
-/// adds at 8 spacings a radius.
+/// In-plane elasticity, with a bending stiffness of 0.004 G a^2, which takes 2 to 3 % off the deformation: about what
+/// the lattice adds at 8 spacings a radius.
 std::string capsule(const std::string& model, double capillary_number, const std::string& more = "") {
   const double modulus = modulus_at(capillary_number);
   return law(model, quantity("shear_modulus", modulus, "N/m") + more) + ", " +
@@ -48,8 +48,9 @@ TEST_CASE("capsules in three dimensions deform and turn as the boundary integral
     double strain, deformation, angle_over_pi, within;
     std::vector<std::string> changes;
   };
-  // Own boundary integral on 1 442 nodes, 0.3 %; and 25/12 Ca of Barthes-Biesel and Rallison, J. Fluid Mech. 113 (1981). The
-  // last is tests/reference/capsules_in_space.json at strain 3.12, from 642 and 1 442 nodes; 1.4 % of the difference is the box's.
+  // Own boundary integral on 1 442 nodes, 0.3 %; and 25/12 Ca of Barthes-Biesel and Rallison, J. Fluid Mech. 113
+  // (1981). The last is tests/reference/capsules_in_space.json at strain 3.12, from 642 and 1 442 nodes; 1.4 % of the
+  // difference is the box's.
   const auto [name, membrane, strain, deformation, angle, within, changes] = GENERATE(
       Case{"Skalak C = 1, Ca 0.3", capsule("skalak", 0.3, R"(, "area_dilation": 1)"), 3.5, 0.3349, 0.155, 0.02, {}},
       Case{"neo-Hookean, Ca 0.15, viscosity ratio 5",
@@ -70,7 +71,8 @@ TEST_CASE("capsules in three dimensions deform and turn as the boundary integral
 }
 
 TEST_CASE("without bending a capsule's deformation comes to the boundary integral's with the spacing", "[space]") {
-  // Neo-Hookean, Ca 0.15: own boundary integral on 1 442 nodes; the box 8 radii wide adds 0.9 % (docs/three-dimensions.md).
+  // Neo-Hookean, Ca 0.15: own boundary integral on 1 442 nodes; the box 8 radii wide adds 0.9 %
+  // (docs/three-dimensions.md).
   constexpr double in_the_box = 1.009 * 0.2717;
   const auto deformation = [](int nodes) {
     const std::string lattice = std::to_string(nodes);
@@ -91,9 +93,9 @@ TEST_CASE("without bending a capsule's deformation comes to the boundary integra
 
 TEST_CASE("with the sharp kernel and the slip correction coarse capsules deform as the boundary integral says",
           "[space]") {
-  // Without bending. In a box of 8 radii D is larger than in an unbounded fluid by 1.2 %, at viscosity ratio 5 by 2 %; at Ca 0.02
-  // the unsteady term adds 0.5 % (docs/three-dimensions.md). The plain scheme is off by +4.1, +3.2, +11.6 and -3.8 % in the first four
-  // cases, more than these bounds allow.
+  // Without bending. In a box of 8 radii D is larger than in an unbounded fluid by 1.2 %, at viscosity ratio 5 by 2 %;
+  // at Ca 0.02 the unsteady term adds 0.5 % (docs/three-dimensions.md). The plain scheme is off by +4.1, +3.2, +11.6
+  // and -3.8 % in the first four cases, more than these bounds allow.
   struct Case {
     const char* name;
     double capillary, ratio, strain;
@@ -122,9 +124,10 @@ TEST_CASE("with the sharp kernel and the slip correction coarse capsules deform 
 TEST_CASE(
     "two capsules pass each other on the path that the boundary integral says, through a film thinner than the kernel",
     "[space]") {
-  // tests/reference/capsules_in_space.json, "pairs". They begin 0.4 radii apart along the gradient. The Reynolds number of 0.25 and
-  // the walls take 2 % off how far they give way (docs/three-dimensions.md). In the plain scheme, whose film hardly drains, they
-  // are 1.63 and 1.24 radii apart on this lattice of 5 spacings a radius, and the gap is 0.46 radii.
+  // tests/reference/capsules_in_space.json, "pairs". They begin 0.4 radii apart along the gradient. The Reynolds number
+  // of 0.25 and the walls take 2 % off how far they give way (docs/three-dimensions.md). In the plain scheme, whose
+  // film hardly drains, they are 1.63 and 1.24 radii apart on this lattice of 5 spacings a radius, and the gap is 0.46
+  // radii.
   const SceneRun run = run_scene(scenes + "/capsule-pair-3d.json");
   REQUIRE(run.summary["status"] == "completed");
   const auto apart = [&](const char* along) {
@@ -144,9 +147,9 @@ TEST_CASE(
 }
 
 TEST_CASE("a biconcave capsule of viscosity ratio 5 turns as the boundary integral says", "[space]") {
-  // tests/reference/capsules_in_space.json: it is at -0.3 pi at strains 4.054 and 4.086 on 362 and 642 nodes, of second order
-  // 4.127. The box adds 0.023 to 0.033, the Reynolds number of 0.25 another 0.066 (docs/three-dimensions.md). The plain scheme
-  // is there at 3.862 on this lattice, 8.5 % too early.
+  // tests/reference/capsules_in_space.json: it is at -0.3 pi at strains 4.054 and 4.086 on 362 and 642 nodes, of second
+  // order 4.127. The box adds 0.023 to 0.033, the Reynolds number of 0.25 another 0.066 (docs/three-dimensions.md). The
+  // plain scheme is there at 3.862 on this lattice, 8.5 % too early.
   constexpr double expected = 4.127 + 0.028 + 0.066;
   const SceneRun run = run_scene(scenes + "/biconcave-capsule-3d.json", {});
   REQUIRE(run.summary["status"] == "completed");
@@ -178,7 +181,8 @@ TEST_CASE("in three dimensions sheared cells come to rest in the shape that they
 }
 
 TEST_CASE("in three dimensions the semi-implicit step bears far more stiffness than the explicit one", "[space]") {
-  // Twenty and ten times what the explicit step bears at most (limits/stretching-3d.json, limits/bending-3d.json), as plan allows.
+  // Twenty and ten times what the explicit step bears at most (limits/stretching-3d.json, limits/bending-3d.json), as
+  // plan allows.
   const auto rest = [](const std::string& coupling, const std::string& modulus) {
     return run_scene(
         std::string(ROULEAU_LIMITS) + "/scenes/capsule-3d.json",
@@ -239,7 +243,8 @@ TEST_CASE("cells whose membranes stay under stress keep their volumes with the a
 }
 
 TEST_CASE("in three dimensions a stiff spheroid turns with Jeffery's period", "[space]") {
-  // Proc. R. Soc. A 102, 161 (1922): half a turn of a spheroid with the ratio r of its axes takes a strain of pi (r + 1/r).
+  // Proc. R. Soc. A 102, 161 (1922): half a turn of a spheroid with the ratio r of its axes takes a strain of pi (r +
+  // 1/r).
   const double exact = std::numbers::pi * (2 + 0.5);
   double error[2];
   for (const int fine : {0, 1}) {
@@ -268,8 +273,8 @@ TEST_CASE("in three dimensions a stiff spheroid turns with Jeffery's period", "[
 
 TEST_CASE("with the slip correction a coarse lattice has the viscosity of a capsule in shear that a fine one has",
           "[space]") {
-  // The part of the relative viscosity that the capsule adds: Ca 0.15, box of 8 radii. Without the correction it is 0.0256, 0.0230
-  // and 0.0208 with 6, 8 and 12 spacings a radius, and with it 0.0179, 0.0177 and 0.0177.
+  // The part of the relative viscosity that the capsule adds: Ca 0.15, box of 8 radii. Without the correction it is
+  // 0.0256, 0.0230 and 0.0208 with 6, 8 and 12 spacings a radius, and with it 0.0179, 0.0177 and 0.0177.
   const SceneRun run = sheared_sphere(law("neo-hookean", quantity("shear_modulus", modulus_at(0.15), "N/m")), 4,
                                       {"/domain/nodes=[48, 48, 48]", "/numerics/tau=2",
                                        "/numerics/area_correction=true", "/numerics/slip_correction=true"});

@@ -28,8 +28,8 @@ class Doublet {
   Doublet(const shape::TriangleSurface& shape, MembraneLaws laws, MorseWell well, double bent)
       : well_(well), cells_(side_by_side(shape, well, bent)), membranes_(cells_, {std::move(laws)}) {}
 
-  /// Goes downhill, `depth` being the energy per area of the contact, by steps that move no node farther than `longest` cells'
-  /// widths: long ones leave shallow minima.
+  /// Goes downhill, `depth` being the energy per area of the contact, by steps that move no node farther than `longest`
+  /// cells' widths: long ones leave shallow minima.
   void relax(double depth, int most_steps, double longest) {
     depth_ = depth;
     const auto morse = shipped(ModelKind::interaction, "morse");
@@ -113,8 +113,8 @@ class Doublet {
   double depth_ = 0;
 };
 
-/// Vesicles of bending modulus 1 and the area of a sphere of radius `size`: a membrane that resists shear as little as keeps
-/// its mesh in shape. `volume`: over that sphere's. `adhesion`: depth size^2/kappa.
+/// Vesicles of bending modulus 1 and the area of a sphere of radius `size`: a membrane that resists shear as little as
+/// keeps its mesh in shape. `volume`: over that sphere's. `adhesion`: depth size^2/kappa.
 class Vesicles {
  public:
   static constexpr double size = 10;
@@ -177,8 +177,8 @@ void check_sigmoid(double volume, double adhesion) {
 
 }  // namespace
 
-// Those of the theory have no thickness. A well R/30 wide holds the rim, too, and with it the disc: at volume 0.65 it bends
-// from an adhesion of 24 to 26 on, with a well of R/60 from 20 to 22 on ("contacts of vesicles over adhesion").
+// Those of the theory have no thickness. A well R/30 wide holds the rim, too, and with it the disc: at volume 0.65 it
+// bends from an adhesion of 24 to 26 on, with a well of R/60 from 20 to 22 on ("contacts of vesicles over adhesion").
 TEST_CASE("the contact of vesicles is flat or sigmoid where theory says, volume 0.65", "[doublet]") {
   check_flat(0.65, 0.85 * flat_between(0.65)[1]);
   check_sigmoid(0.65, 1.5 * flat_between(0.65)[1]);
@@ -191,7 +191,8 @@ TEST_CASE("the contact of vesicles is flat or sigmoid where theory says, volumes
 }
 
 TEST_CASE("the flat contact of vesicles tends to the theory's as the well gets narrow", "[doublet]") {
-  // The membranes part at the rim like their curvature's parabola, so that a well of width w holds an annulus of width ~ sqrt(w).
+  // The membranes part at the rim like their curvature's parabola, so that a well of width w holds an annulus of width
+  // ~ sqrt(w).
   const nlohmann::json exact = read_reference("vesicle_doublets.json")["shapes"][0];
   double radius[2], bending[2];
   for (int k = 0; k < 2; ++k) {
@@ -220,8 +221,9 @@ TEST_CASE("contacts of vesicles over adhesion", "[.doublet_scan]") {
 }
 
 TEST_CASE("contacts of red cells over depth", "[.doublet_scan]") {
-  // The cells of scenes/doublet-3d.json: lengths in um, forces in pN, so that 1e-6 J/m2 are 1. There are minima beside the least
-  // one: each depth is tried from straight cells, from bent ones, and from where the next larger depth left those.
+  // The cells of scenes/doublet-3d.json: lengths in um, forces in pN, so that 1e-6 J/m2 are 1. There are minima beside
+  // the least one: each depth is tried from straight cells, from bent ones, and from where the next larger depth left
+  // those.
   const MembraneLaws laws = {surface_law("skalak", {5, 10, 0}), surface_law("bending", {0.36, 0, 0}),
                              surface_law("volume", {1e4, 1})};
   const shape::TriangleSurface shape = shape::biconcave_disc(12, 3.91);

@@ -99,8 +99,8 @@ TEST_CASE("steady Poiseuille flow with TRT does not depend on tau and is exact a
   CHECK(error < 1e-10);
 }
 
-/// Relative error of Taylor-Green vortices on n x n nodes after their velocity has halved or so. They travel with a mean
-/// flow, in units of their own velocity, and so does the frame of the unsteady term, unless it is left at rest.
+/// Relative error of Taylor-Green vortices on n x n nodes after their velocity has halved or so. They travel with a
+/// mean flow, in units of their own velocity, and so does the frame of the unsteady term, unless it is left at rest.
 double taylor_green_error(const std::string& collision, std::vector<double> parameters, bool inertia, int n,
                           std::array<double, 2> mean = {0, 0}, bool frame_moves = true) {
   const double tau = 0.8, nu = (tau - 0.5) / 3, k = 2 * pi / n, speed = 0.32 / n;

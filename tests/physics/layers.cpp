@@ -30,7 +30,8 @@ struct TwoLayers {
     const double b = border, s = (b * b / 2 + (1 - b * b) / (2 * ratio)) / (b + (1 - b) / ratio);
     return y < b ? s * y - y * y / 2 : ((1 - y * y) / 2 - s * (1 - y)) / ratio;
   }
-  /// Amplitude where the upper wall oscillates with amplitude 1: i W^2 u = (mu u')', W^2 = omega H^2/nu below the border.
+  /// Amplitude where the upper wall oscillates with amplitude 1: i W^2 u = (mu u')', W^2 = omega H^2/nu below the
+  /// border.
   [[nodiscard]] Complex oscillating(double womersley_square, double y) const {
     const Complex k = std::sqrt(Complex(0, womersley_square)), l = k / std::sqrt(ratio);
     // u = a sinh(k y) below, cosh(l (1 - y)) + c sinh(l (1 - y)) above; u and mu u' are the same at the border.

@@ -43,7 +43,8 @@ TEST_CASE("a capsule near a wall rises and moves along it as the boundary integr
 }
 
 TEST_CASE("a capsule beside the middle of a channel does as the boundary integral says", "[lift]") {
-  // tests/reference/capsule_in_channel.py: rows of strain, centre, deformation, angle in degrees, relative viscosity, area.
+  // tests/reference/capsule_in_channel.py: rows of strain, centre, deformation, angle in degrees, relative viscosity,
+  // area.
   struct Case {
     double capillary, ratio;
   };
@@ -57,7 +58,8 @@ TEST_CASE("a capsule beside the middle of a channel does as the boundary integra
        "/cell_types/capsule/interior_viscosity=" + nlohmann::json(1.2e-3 * ratio).dump(),
        "/cell_types/capsule/membrane/0/parameters/shear_modulus=" + nlohmann::json(modulus).dump(),
        "/cell_types/capsule/membrane/1/parameters/modulus=" + nlohmann::json(0.01 * modulus * radius * radius).dump(),
-       R"(/numerics={"tau": 2, "density_factor": 375, "coupling": "auto", "slip_correction": true, "area_correction": true})",
+       R"(/numerics={"tau": 2, "density_factor": 375, "coupling": "auto", )"
+       R"("slip_correction": true, "area_correction": true})",
        "/stages/0/strain=8", R"(/output={"cells": {"strain": 1}})"});
   REQUIRE(run.summary["status"] == "completed");
   const auto y = run.column("y_m"), deformation = run.column("deformation"), angle = run.column("angle_rad");

@@ -19,9 +19,9 @@ struct Minimising {
   double least_length = 1e-12;  ///< the search ends, too, where so small a share of a step does not lead down
 };
 
-/// Limited-memory BFGS with halved steps (Nocedal and Wright, Numerical Optimization, algorithms 7.4 and 7.5; where values
-/// are too close to be compared, slopes are: Hager and Zhang, SIAM J. Optim. 16, 170, 2005). `value_of(place, gradient)`
-/// sets the gradient and returns the value. Returns the largest component of the gradient that is left.
+/// Limited-memory BFGS with halved steps (Nocedal and Wright, Numerical Optimization, algorithms 7.4 and 7.5; where
+/// values are too close to be compared, slopes are: Hager and Zhang, SIAM J. Optim. 16, 170, 2005). `value_of(place,
+/// gradient)` sets the gradient and returns the value. Returns the largest component of the gradient that is left.
 template <class ValueOf>
 double minimise(Eigen::VectorXd& place, const Minimising& how, ValueOf value_of) {
   struct Pair {

@@ -1,4 +1,5 @@
-// Flows that oscillate between walls, against their exact solutions: Stokes layers and Womersley flow in two dimensions.
+// Flows that oscillate between walls, against their exact solutions: Stokes layers and Womersley flow in two
+// dimensions.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
@@ -20,8 +21,8 @@ using Complex = std::complex<double>;
 /// Which of the three oscillates.
 enum class Driven { one_wall, both_walls, force };
 
-/// Velocity over its scale between walls at y = 0 and 1, where the drive is sin(t): i W^2 u = u'' (+ W^2 for a force, so
-/// that a fluid without viscosity has amplitude 1), W^2 = omega H^2/nu.
+/// Velocity over its scale between walls at y = 0 and 1, where the drive is sin(t): i W^2 u = u'' (+ W^2 for a force,
+/// so that a fluid without viscosity has amplitude 1), W^2 = omega H^2/nu.
 Complex exact_amplitude(Driven driven, double womersley_square, double y) {
   const Complex k = std::sqrt(Complex(0, womersley_square));
   if (driven == Driven::one_wall) return std::sinh(k * y) / std::sinh(k);

@@ -95,8 +95,8 @@ TEST_CASE("the rate of tank treading in summary.json is that of the boundary-int
 
 TEST_CASE("a cell that travels migrates as it would in a fluid without inertia, whatever the density factor",
           "[rheology]") {
-  // In creeping flow the capsule migrates to the middle. An unsteady term that knew only the lattice's frame of rest sent
-  // it to the wall with the first of these density factors.
+  // In creeping flow the capsule migrates to the middle. An unsteady term that knew only the lattice's frame of rest
+  // sent it to the wall with the first of these density factors.
   const auto migration = [](const char* inertia, const char* density_factor) {
     auto overrides = driven("0.4 s");
     overrides.emplace_back(std::string("/fluid/inertia=") + inertia);

@@ -135,7 +135,8 @@ TEST_CASE("a pair of red cells comes to rest at the minimum of its energy and ke
 
 TEST_CASE("a pair that attracts itself strongly comes to rest where the cells' own faces repel each other",
           "[rouleau]") {
-  // Without that repulsion faces of one cell touch in the minimum (0.008 um apart), and the run is 10 % above it at the end.
+  // Without that repulsion faces of one cell touch in the minimum (0.008 um apart), and the run is 10 % above it at the
+  // end.
   const nlohmann::json minimum = read_reference("rouleau_minimum.json")["squeezed_pair"];
   const SceneRun run = run_pair({R"(/stages=[{"name": "rest", "duration": "2 s", "density_factor": 6000}])",
                                  R"(/interactions/0/parameters/depth="3e-6 J/m2")",

@@ -44,7 +44,8 @@ ArrayFlow array_flow(int side, double radius) {
       .domain = {{side, side, side}, {true, true, true}}, .relaxation_rate = 1 / tau, .body_force = {force}};
   setting.solid = std::make_shared<const SolidNodes<3>>(sphere_nodes(side, radius));
   Fluid3 fluid(setting, make_collision("trt", {0.1875}, tau, false, 3));
-  // The mean velocity, which lasts longest, dies out as exp(-t 6 pi mu R K / side^3) and faster; the drag K is at least 1.
+  // The mean velocity, which lasts longest, dies out as exp(-t 6 pi mu R K / side^3) and faster; the drag K is at least
+  // 1.
   advance(fluid, std::lround(12 * std::pow(side, 3) / (6 * pi * viscosity * radius)));
   fluid.settle();
   const std::vector<double> rows = fluid.row_velocities();
@@ -57,8 +58,8 @@ ArrayFlow array_flow(int side, double radius) {
 
 TEST_CASE("the drag of a sphere in a simple cubic array is Hasimoto's, to second order", "[space][flow]") {
   // Hasimoto, J. Fluid Mech. 5 (1959) 317: the velocity at a given force over that of a sphere alone. Zick and Homsy,
-  // J. Fluid Mech. 115 (1982) 13, have the same at this share and 7.442 at 0.216. By how much the lattice's drag differs
-  // depends on how the sphere meets its nodes: the order is that of the bound.
+  // J. Fluid Mech. 115 (1982) 13, have the same at this share and 7.442 at 0.216. By how much the lattice's drag
+  // differs depends on how the sphere meets its nodes: the order is that of the bound.
   for (const double share : {0.02, 0.216}) {
     const double exact = share > 0.1 ? 7.442 : 1 / (1 - 1.7601 * std::cbrt(share) + share - 1.5593 * share * share);
     for (const int side : share > 0.1 ? std::array{14, 20, 32} : std::array{16, 24, 36}) {

@@ -109,8 +109,8 @@ TEST_CASE("a flow in a plane, computed on four layers of D3Q19, is that of D2Q9 
 
 namespace {
 
-/// Relative error of a Beltrami flow, u = (sin kz + cos ky, sin kx + cos kz, sin ky + cos kx), which is its own curl: it
-/// decays as exp(-viscosity k^2 t), with inertia and without.
+/// Relative error of a Beltrami flow, u = (sin kz + cos ky, sin kx + cos kz, sin ky + cos kx), which is its own curl:
+/// it decays as exp(-viscosity k^2 t), with inertia and without.
 double beltrami_error(const std::string& collision, const std::vector<double>& parameters, bool inertia, int n) {
   const double tau = 0.8, viscosity = (tau - 0.5) / 3, k = 2 * pi / n, speed = 0.2 / n;
   const FluidSetting<3> setting{
@@ -167,7 +167,8 @@ TEST_CASE("a Beltrami flow in three dimensions decays with second order, with in
 
 namespace {
 
-/// A shear wave u_along = sin(k wave . x), k one period of 32 nodes, that a stream carries in the direction of its changes.
+/// A shear wave u_along = sin(k wave . x), k one period of 32 nodes, that a stream carries in the direction of its
+/// changes.
 struct ShearWave {
   int along;
   std::array<int, 3> wave;

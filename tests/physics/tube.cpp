@@ -91,8 +91,8 @@ TEST_CASE("the flow rate of a tube does not depend on tau with TRT", "[space][fl
 }
 
 TEST_CASE("a stiff capsule on the axis of a tube twice as wide moves as a rigid sphere does", "[space]") {
-  // Haberman and Sayre, David Taylor Model Basin Report 1143 (1958): over the flow's largest velocity, at half the tube's
-  // radius 0.8471. On the lattice the capsule is larger by a part of a spacing, and slower.
+  // Haberman and Sayre, David Taylor Model Basin Report 1143 (1958): over the flow's largest velocity, at half the
+  // tube's radius 0.8471. On the lattice the capsule is larger by a part of a spacing, and slower.
   const double share = 0.5;
   const double exact =
       (1 - 2.0 / 3 * share * share - 0.20217 * std::pow(share, 5)) / (1 - 0.75857 * std::pow(share, 5));

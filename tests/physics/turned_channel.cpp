@@ -12,7 +12,8 @@ using namespace rouleau::test;
 
 namespace {
 
-/// A channel along the diagonal of a periodic box, from end to end, as a long rectangle: the region comes again in its images.
+/// A channel along the diagonal of a periodic box, from end to end, as a long rectangle: the region comes again in its
+/// images.
 RegionPointer<2> diagonal_channel(const Domain<2>& domain, double half_height) {
   const Vec<2> along(domain.size[0], domain.size[1]), across = Vec<2>(-along[1], along[0]).normalized() * half_height;
   const Vec<2> middle = (along - Vec<2>::Ones()) / 2;

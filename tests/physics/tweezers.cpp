@@ -32,8 +32,8 @@ constexpr Measured mills[] = {
     {130, {15.19, 13.89, 16.62}, {4.53, 3.88, 5.19}},  {151, {15.60, 14.43, 16.87}, {4.35, 3.78, 4.99}},
     {173, {16.07, 14.26, 17.88}, {4.60, 4.08, 5.05}},  {193, {16.30, 14.49, 18.02}, {4.39, 3.75, 4.94}}};
 
-/// In-plane elasticity, bending, and what keeps volume and area to 0.1 and 1 % under the largest pull. Lengths in um and
-/// forces in pN, so that moduli of membranes are in uN/m, of bending in 1e-18 J, of the volume in Pa.
+/// In-plane elasticity, bending, and what keeps volume and area to 0.1 and 1 % under the largest pull. Lengths in um
+/// and forces in pN, so that moduli of membranes are in uN/m, of bending in 1e-18 J, of the volume in Pa.
 MembraneLaws red_cell(MembraneLaws in_plane) {
   in_plane.push_back(surface_law("bending", {0.3, 0, 0}));
   in_plane.push_back(surface_law("volume", {1e4, 1}));
@@ -149,8 +149,8 @@ TEST_CASE("a red cell in optical tweezers is as long and as wide as measured", "
   // Skalak's law with the modulus that Dimitrakopoulos (Phys. Rev. E 85, 041917, 2012) found for it: 2.4 to 2.75 uN/m.
   const Beyond beyond = compare(8, "Skalak, 2.4 uN/m", skalak_cell(2.4));
   CHECK(beyond.axial.empty());
-  // There the pull has straightened the cell, and its volume and area alone make it 3.8 to 3.9 um wide. The bars of 151 and
-  // 193 pN hold that, the one between begins at 4.08 um.
+  // There the pull has straightened the cell, and its volume and area alone make it 3.8 to 3.9 um wide. The bars of 151
+  // and 193 pN hold that, the one between begins at 4.08 um.
   CHECK(beyond.transverse == std::vector<double>{173});
 }
 

@@ -1,4 +1,5 @@
-// Walls that repel or hold cells: where a cell comes to rest, what its energy becomes, what the walls' stress knows of it.
+// Walls that repel or hold cells: where a cell comes to rest, what its energy becomes, what the walls' stress knows of
+// it.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

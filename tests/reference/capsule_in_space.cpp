@@ -1,21 +1,23 @@
-// A capsule, or two, in unbounded simple shear in three dimensions, by boundary integrals: what Rouleau is compared with, and
-// does not compute (tests/reference/capsules_in_space.json). Shares no code with it.
+// A capsule, or two, in unbounded simple shear in three dimensions, by boundary integrals: what Rouleau is compared
+// with, and does not compute (tests/reference/capsules_in_space.json). Shares no code with it.
 //
-//   g++ -O3 -march=native -fopenmp -std=c++20 -I /usr/include/eigen3 tests/reference/capsule_in_space.cpp -o /tmp/capsule
-//   /tmp/capsule LAW CA RATIO [N] [STRAIN] [STEP] [SHAPE] [DX DY]
+//   g++ -O3 -march=native -fopenmp -std=c++20 -I /usr/include/eigen3 tests/reference/capsule_in_space.cpp -o
+//   /tmp/capsule /tmp/capsule LAW CA RATIO [N] [STRAIN] [STEP] [SHAPE] [DX DY]
 //
-// LAW is neo-hookean, skalak (C = 1) or drop; CA = viscosity times shear rate times radius over the shear modulus (the surface
-// tension); RATIO the viscosity inside over that outside; N the frequency of the geodesic sphere (10 N^2 + 2 nodes); SHAPE "sphere", if left out, or "biconcave". Prints
-// strain, deformation (a - b)/(a + b) of the ellipsoid of inertia in the plane of shear, its angle over pi, and the volume over
-// that at first. With DX and DY a second one like it lies that far along the flow and along its gradient, and the distances of
-// their centroids along both follow, and the least one from a node of the first to the second's nodes and middles of triangles.
+// LAW is neo-hookean, skalak (C = 1) or drop; CA = viscosity times shear rate times radius over the shear modulus (the
+// surface tension); RATIO the viscosity inside over that outside; N the frequency of the geodesic sphere (10 N^2 + 2
+// nodes); SHAPE "sphere", if left out, or "biconcave". Prints strain, deformation (a - b)/(a + b) of the ellipsoid of
+// inertia in the plane of shear, its angle over pi, and the volume over that at first. With DX and DY a second one like
+// it lies that far along the flow and along its gradient, and the distances of their centroids along both follow, and
+// the least one from a node of the first to the second's nodes and middles of triangles.
 //
 // Lengths are over the radius, rates over the shear rate, stresses over viscosity times shear rate. On the surface
 //   u(x0) = u_shear(x0) + 1/(8 pi) int G.q dS + (1 - ratio)/(8 pi) int (u(x) - u(x0)).T.n dS,
 // q the force of the membrane on the fluid per area, x - x0 the argument of G and T (Pozrikidis, Boundary Integral and
-// Singularity Methods, 1992, section 5.3, with the identity int T.n dS = -4 pi to take the singularity out). q and u are linear
-// on flat triangles; those around x0 are integrated in polar coordinates, near ones with more points. The equation for u is
-// solved by fixed points with Anderson's mixing. Steps are Runge-Kutta's of second order. Membranes have no bending stiffness.
+// Singularity Methods, 1992, section 5.3, with the identity int T.n dS = -4 pi to take the singularity out). q and u
+// are linear on flat triangles; those around x0 are integrated in polar coordinates, near ones with more points. The
+// equation for u is solved by fixed points with Anderson's mixing. Steps are Runge-Kutta's of second order. Membranes
+// have no bending stiffness.
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
@@ -102,7 +104,8 @@ const std::vector<Point>& points(bool near) {
   }();
   return near ? many : three;
 }
-/// From corner A outward: (r, s) in the unit square to b = r (1 - s), c = r s; with 1/r in the integrand exact to high order.
+/// From corner A outward: (r, s) in the unit square to b = r (1 - s), c = r s; with 1/r in the integrand exact to high
+/// order.
 const std::vector<Point>& polar_points() {
   static const std::vector<Point> all = [] {
     constexpr double x[4] = {0.0694318442029737, 0.330009478207572, 0.669990521792428, 0.930568155797026};
@@ -123,8 +126,8 @@ struct Capsule {
   double ca, ratio;
   std::deque<Eigen::VectorXd> tried, moved;  // of Anderson's mixing
 
-  /// Force of each node on the fluid over the area that belongs to it, less a pressure, which moves nothing: so that what is left
-  /// does no work where the volume alone changes.
+  /// Force of each node on the fluid over the area that belongs to it, less a pressure, which moves nothing: so that
+  /// what is left does no work where the volume alone changes.
   Field tractions(const Field& x) const {
     Field force(x.size(), Vec::Zero()), normal(x.size(), Vec::Zero());
     std::vector<double> area(x.size(), 0);

@@ -161,8 +161,8 @@ const std::set<std::string> plain{"$ref",
 const std::set<std::string> with_one_rule{"items", "additionalProperties"};
 const std::set<std::string> with_rules{"oneOf", "properties", "patternProperties", "definitions"};
 
-/// Throws std::invalid_argument, naming the place, for a keyword that the host passes over in silence, and a "$ref" to another
-/// file.
+/// Throws std::invalid_argument, naming the place, for a keyword that the host passes over in silence, and a "$ref" to
+/// another file.
 void require_known(const Json& schema, const Json& rule, const std::string& pointer) {
   if (rule.is_boolean()) return;
   const auto refuse = [](const std::string& at, const std::string& problem) {

@@ -118,7 +118,8 @@ inline Case travelling_in_space() {
       "travelling in space",
       ROULEAU_SCENES "/capsule-3d.json",
       {"/numerics/precision=\"f64\"",
-       R"(/domain={"size": ["15 um", "12 um", "12 um"], "nodes": [40, 32, 32], "y": {"lower": {"wall": {}}, "upper": {"wall": {}}}})",
+       R"(/domain={"size": ["15 um", "12 um", "12 um"], "nodes": [40, 32, 32], )"
+       R"("y": {"lower": {"wall": {}}, "upper": {"wall": {}}}})",
        R"(/stages=[{"name": "driven", "pressure_gradient": "1e6 Pa/m", "duration": "1 s", "start": "developed"}])",
        "/output={}", "/cell_types/capsule/interior_viscosity=\"6 cP\"", "/numerics/area_correction=true", semi_implicit,
        R"(/interactions=[{"between": ["capsule", "capsule"], "model": "morse", "parameters": {

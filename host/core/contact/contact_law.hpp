@@ -43,8 +43,8 @@ struct ContactKey {
   ImageShift shift;
 };
 
-/// What potentials are told of a cell's contacts, each of a node with another cell's image, with the cell itself or with
-/// a wall. Arrays that no potential reads may be empty, others longer than there are contacts.
+/// What potentials are told of a cell's contacts, each of a node with another cell's image, with the cell itself or
+/// with a wall. Arrays that no potential reads may be empty, others longer than there are contacts.
 struct ContactValues {
   std::vector<double> distance;             ///< positive
   std::vector<double> normal_velocity;      ///< d distance / dt
@@ -58,8 +58,8 @@ struct ContactValues {
 /// A potential and the place of what it remembers.
 class ContactLaw {
  public:
-  /// Adds what the potential, the `place`-th of those that share the memory, remembers of so many cells, as far as it is
-  /// not there from an earlier stage.
+  /// Adds what the potential, the `place`-th of those that share the memory, remembers of so many cells, as far as it
+  /// is not there from an earlier stage.
   ContactLaw(Potential potential, std::size_t place, ContactMemory& memory, std::size_t cells);
 
   [[nodiscard]] const Potential& potential() const { return potential_; }
@@ -74,7 +74,8 @@ class ContactLaw {
   /// Sets what the law reads, but the key, to the values of the contacts with these numbers.
   void choose(const ContactValues& from, const std::vector<int>& contacts, ContactValues& chosen) const;
   /// Sets law[0], law[1] ... to the force, or the energy, at contacts of a cell with so many nodes, which remembers the
-  /// `known` states. `next`: takes the state after one step of those contacts; null: somebody looks, and there is no step.
+  /// `known` states. `next`: takes the state after one step of those contacts; null: somebody looks, and there is no
+  /// step.
   void evaluate(int nodes, const std::vector<ContactState>& known, const ContactValues& values, Range contacts,
                 bool energy, std::vector<ContactState>* next, double* law) const;
 

@@ -8,8 +8,8 @@
 namespace rouleau::core {
 
 /// In structure of arrays; entries [begin, end) of `ranges[p]` belong to the cell's pair p (NeighbourList), those of
-/// `within` are with the cell itself. Node X of the cell, closest point P = (1 - along) X_j + along X_j+1 on segment j of
-/// the other cell's image. The distance is |X - P|, at least `least_distance`.
+/// `within` are with the cell itself. Node X of the cell, closest point P = (1 - along) X_j + along X_j+1 on segment j
+/// of the other cell's image. The distance is |X - P|, at least `least_distance`.
 struct ContactList : ContactValues {
   std::vector<int> node;     ///< index in Membranes
   std::vector<int> segment;  ///< index in Membranes of the other cell's segment j, its first node

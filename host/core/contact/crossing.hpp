@@ -17,8 +17,8 @@ struct Crossing {
   bool inside;       ///< the outlines do not cross, but `cell` lies inside `other`
 };
 
-/// The first crossing in order of cells, or none, of pairs whose first cell is this rank's and whose second one it knows.
-/// Outlines that only touch do not cross.
+/// The first crossing in order of cells, or none, of pairs whose first cell is this rank's and whose second one it
+/// knows. Outlines that only touch do not cross.
 std::optional<Crossing> find_crossing(const Membranes& membranes, const Domain<2>& domain);
 
 }  // namespace rouleau::core

@@ -27,8 +27,8 @@ double suitable_skin(const CellNodes& cells);
 double contact_reach(const std::vector<Interaction>& interactions);
 /// The largest cutoff for each pair of types.
 Cutoffs pair_cutoffs(const CellNodes& cells, const std::vector<Interaction>& interactions);
-/// The largest within a cell of each type; none: no cell touches itself. Throws std::invalid_argument for potentials that
-/// remember or read a velocity.
+/// The largest within a cell of each type; none: no cell touches itself. Throws std::invalid_argument for potentials
+/// that remember or read a velocity.
 std::vector<double> self_cutoffs(std::size_t types, const std::vector<SelfInteraction>& within_cells);
 
 }  // namespace rouleau::core

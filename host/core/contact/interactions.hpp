@@ -1,4 +1,5 @@
-// Forces between cells, and within one: potentials integrated over facing membranes, with the reaction on the other side.
+// Forces between cells, and within one: potentials integrated over facing membranes, with the reaction on the other
+// side.
 #pragma once
 
 #include <string>
@@ -37,12 +38,12 @@ struct ContactsOf<3> {
   using Reactions = std::vector<TouchedCell>;
 };
 
-/// Node i with rest measure w (in two dimensions a length, in three an area) at distance r of its closest point on another
-/// cell: energy w/2 phi(r), force w/2 f(r) along the connecting line, the reaction shared by the ends of the segment, or
-/// the corners of the triangle, that the point lies on. With measures at rest this is the exact gradient of the energy,
-/// with neither net force nor net torque (Derjaguin; docs: physics, interaction). Within a cell the closest point is one on
-/// those parts of its membrane that the node may touch (SelfContacts, SelfReach), for the largest cutoff of the cell's type;
-/// these potentials depend on the distance alone.
+/// Node i with rest measure w (in two dimensions a length, in three an area) at distance r of its closest point on
+/// another cell: energy w/2 phi(r), force w/2 f(r) along the connecting line, the reaction shared by the ends of the
+/// segment, or the corners of the triangle, that the point lies on. With measures at rest this is the exact gradient of
+/// the energy, with neither net force nor net torque (Derjaguin; docs: physics, interaction). Within a cell the closest
+/// point is one on those parts of its membrane that the node may touch (SelfContacts, SelfReach), for the largest
+/// cutoff of the cell's type; these potentials depend on the distance alone.
 template <int D>
 class Interactions {
  public:
@@ -56,18 +57,20 @@ class Interactions {
                const std::vector<SelfInteraction>& within_cells = {});
 
   static constexpr int phases = 3;
-  /// Pass over cells: phases 0, 1, 2 with a barrier after each. Adds to the forces and advances the state of the contacts
-  /// by one step; the sums do not depend on the workers.
+  /// Pass over cells: phases 0, 1, 2 with a barrier after each. Adds to the forces and advances the state of the
+  /// contacts by one step; the sums do not depend on the workers.
   void run(Worker worker, int phase, Cells& cells);
-  /// Between steps, with other ranks: whether lists of cells that are near each other are out of date (DisplacementWatch).
+  /// Between steps, with other ranks: whether lists of cells that are near each other are out of date
+  /// (DisplacementWatch).
   [[nodiscard]] DisplacementWatch& watch() { return contacts_.watch(); }
   /// Takes no memory for the cells that are not known, which have these nodes.
   void forget(const Cells& cells, std::span<const Range> nodes);
   /// Whether potentials want to know velocities.
   [[nodiscard]] bool needs_velocities() const { return needs_velocities_; }
 
-  /// In two dimensions after phase 1, calls function(other, x, y, count) for each pair of a cell: where the reactions of its
-  /// contacts on consecutive nodes of `other` stand, of another rank's cell those that are to be put there before phase 2.
+  /// In two dimensions after phase 1, calls function(other, x, y, count) for each pair of a cell: where the reactions
+  /// of its contacts on consecutive nodes of `other` stand, of another rank's cell those that are to be put there
+  /// before phase 2.
   template <class Function>
   void for_reactions(int cell, Function function) {
     for (const NeighbourList::Pair& pair : contacts_.neighbours().list(cell).pairs) {
@@ -78,12 +81,12 @@ class Interactions {
   /// After phase 1: what a cell does to others; of another rank's cell that is to be put there before phase 2.
   [[nodiscard]] Reactions& reactions(int cell) { return reactions_[cell]; }
 
-  /// After phase 1: over a cell's contacts the sum of the force along x on its nodes, times the periods along y by which the
-  /// other's image is shifted.
+  /// After phase 1: over a cell's contacts the sum of the force along x on its nodes, times the periods along y by
+  /// which the other's image is shifted.
   [[nodiscard]] double force_across_images(int cell) const { return across_images_[cell]; }
 
-  /// Energy of the contacts at the present positions, for which run() has made the lists, in their present state, of all
-  /// ranks' cells. Not a pass.
+  /// Energy of the contacts at the present positions, for which run() has made the lists, in their present state, of
+  /// all ranks' cells. Not a pass.
   [[nodiscard]] double energy(const Cells& cells, const Ranks<D>& ranks = {}) const;
   /// A potential that acts but tells no energy; empty: none.
   [[nodiscard]] std::string without_energy() const;

@@ -10,8 +10,8 @@
 
 namespace rouleau::core {
 
-/// Images of cells in patches of triangles that follow each other, which lie side by side in most meshes: who asks for the
-/// triangles near a place looks at patches first.
+/// Images of cells in patches of triangles that follow each other, which lie side by side in most meshes: who asks for
+/// the triangles near a place looks at patches first.
 class NearTriangles {
  public:
   struct Triangle {
@@ -42,8 +42,8 @@ class NearTriangles {
 
   /// Chooses a place that for_near() is about.
   void choose(const Eigen::AlignedBox3d& box);
-  /// Calls function(triangle, distance) for an image's triangles that are near a place in the chosen box; `distance`: of
-  /// their middles.
+  /// Calls function(triangle, distance) for an image's triangles that are near a place in the chosen box; `distance`:
+  /// of their middles.
   template <class Function>
   void for_near(const Vec<3>& place, const Image& image, Function function) const {
     for (const Part& patch : image.near) {

@@ -13,7 +13,8 @@ struct Way {
   double length;
 };
 
-/// From each node: along its edges, and across the edges that lie opposite to it, in a straight line over both triangles.
+/// From each node: along its edges, and across the edges that lie opposite to it, in a straight line over both
+/// triangles.
 std::vector<std::vector<Way>> ways_of(const RestSurface& rest) {
   const Mesh& mesh = rest.mesh;
   const auto edge_length = [&](int i, int j) { return (rest.nodes()[i] - rest.nodes()[j]).norm(); };

@@ -7,10 +7,10 @@
 
 namespace rouleau::core {
 
-/// Of each node of a shape, the triangles whose corners are all at least pi/2 cutoffs away along the surface at rest (half a
-/// circle that is a cutoff wide). The way is measured along edges and across pairs of triangles, which on regular meshes is at
-/// most 4 % too long; that much is taken off. Which triangles these are never changes, so that forces are an exact gradient. A
-/// flat membrane, and a round one wider than the cutoff, do nothing to themselves.
+/// Of each node of a shape, the triangles whose corners are all at least pi/2 cutoffs away along the surface at rest
+/// (half a circle that is a cutoff wide). The way is measured along edges and across pairs of triangles, which on
+/// regular meshes is at most 4 % too long; that much is taken off. Which triangles these are never changes, so that
+/// forces are an exact gradient. A flat membrane, and a round one wider than the cutoff, do nothing to themselves.
 class SelfReach {
  public:
   SelfReach(const RestSurface& rest, double cutoff);

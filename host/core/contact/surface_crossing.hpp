@@ -16,8 +16,8 @@ struct SurfaceCrossing {
   static constexpr double deepest = 3;  ///< that is looked for
 };
 
-/// The deepest node of this rank's cells; none: no node lies inside another cell that it knows. What crosses within a cell is
-/// not looked for.
+/// The deepest node of this rank's cells; none: no node lies inside another cell that it knows. What crosses within a
+/// cell is not looked for.
 std::optional<SurfaceCrossing> find_crossing(const Surfaces& surfaces, const Domain<3>& domain);
 
 }  // namespace rouleau::core

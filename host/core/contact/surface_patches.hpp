@@ -31,8 +31,8 @@ class SurfacePatches {
   };
   /// The point of a cell's surface closest to a place, if it lies within `most`.
   std::optional<Point> closest(const Vec<3>& place, int cell, double most);
-  /// The smallest distance between a cell and any image of the others, itself among them, from the nodes of either to the
-  /// surface of the other, if it is not more than `most`; else infinite. `boxes`: of all cells.
+  /// The smallest distance between a cell and any image of the others, itself among them, from the nodes of either to
+  /// the surface of the other, if it is not more than `most`; else infinite. `boxes`: of all cells.
   double gap(int cell, std::span<const int> others, const std::vector<BoundingBox<3>>& boxes, double most);
 
  private:

@@ -64,8 +64,8 @@ void TriangleContacts::measure(Worker worker, const Surfaces& surfaces) {
   }
 }
 
-/// By how much two cells may have come nearer to each other since their distances were measured. While lists are made anew
-/// others' paths say nothing: those workers may be ahead or behind.
+/// By how much two cells may have come nearer to each other since their distances were measured. While lists are made
+/// anew others' paths say nothing: those workers may be ahead or behind.
 double TriangleContacts::travelled(int cell, int other) const {
   if (renewed_[cell] != 0) return 0;
   const double path = path_[cell] + path_[other];

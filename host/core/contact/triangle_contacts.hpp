@@ -33,14 +33,14 @@ struct TriangleContact {
   Vec<3> direction;  ///< (X - P) / |X - P|; the triangle's outward normal where X = P
 };
 
-/// Exact closest points within the cutoffs, one for each node and each image of another cell, and one on those parts of its
-/// own surface that it may touch (SelfReach). They depend on the present positions alone, not on when the lists of candidates
-/// were made.
+/// Exact closest points within the cutoffs, one for each node and each image of another cell, and one on those parts of
+/// its own surface that it may touch (SelfReach). They depend on the present positions alone, not on when the lists of
+/// candidates were made.
 ///
 /// Candidates stay complete while no node has moved further than the skin, for the reason that NeighbourList has; a
-/// triangle is a set of convex combinations of its corners, too. Of each a bound of its last known distance is kept, which has
-/// changed by no more than both cells' nodes have travelled since: most need not be looked at. Those that are, are looked at
-/// three at a time, the nearest first.
+/// triangle is a set of convex combinations of its corners, too. Of each a bound of its last known distance is kept,
+/// which has changed by no more than both cells' nodes have travelled since: most need not be looked at. Those that
+/// are, are looked at three at a time, the nearest first.
 class TriangleContacts {
  public:
   /// `self_cutoffs`: of each type, within a cell; 0, and where there are none: cells do not touch themselves.
@@ -54,7 +54,8 @@ class TriangleContacts {
   void measure(Worker worker, const Surfaces& surfaces);
   /// Pass over cells, after a barrier: their lists, if they have to be made anew.
   void refresh(Worker worker, const Surfaces& surfaces);
-  /// Then: the contacts of a cell of this rank, by node, then by the other cell and its image. A cell's by one worker at a time.
+  /// Then: the contacts of a cell of this rank, by node, then by the other cell and its image. A cell's by one worker
+  /// at a time.
   void find(int cell, const Surfaces& surfaces, std::vector<TriangleContact>& contacts) const;
 
   /// With other ranks, before measure(): they agree on whether a node has moved too far.

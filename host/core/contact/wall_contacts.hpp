@@ -31,17 +31,17 @@ struct Wall {
 };
 
 /// Node i with rest measure w (in two dimensions a length, in three an area) at distance r of a wall: energy w phi(r),
-/// force w f(r) away from the wall. At a contact of two cells the weight is w/2, for each of the two has nodes; a wall has
-/// none, so that a membrane's own count whole (docs: physics, interaction). Walls lie across the axes that are not
+/// force w f(r) away from the wall. At a contact of two cells the weight is w/2, for each of the two has nodes; a wall
+/// has none, so that a membrane's own count whole (docs: physics, interaction). Walls lie across the axes that are not
 /// periodic, or are a tube along x around the middle of the domain. They take the reaction, normal to themselves.
 template <int D>
 class WallContacts {
  public:
   using Cells = std::conditional_t<D == 2, Membranes, Surfaces>;
 
-  /// Adds what potentials remember to `cells.wall_contacts`, as far as it is not there from an earlier stage. tube_radius:
-  /// in place of the domain's walls; 0: none. Throws std::invalid_argument without walls, and for potentials that read
-  /// how surfaces slide.
+  /// Adds what potentials remember to `cells.wall_contacts`, as far as it is not there from an earlier stage.
+  /// tube_radius: in place of the domain's walls; 0: none. Throws std::invalid_argument without walls, and for
+  /// potentials that read how surfaces slide.
   WallContacts(Cells& cells, const std::vector<WallInteraction>& interactions, const Domain<D>& domain,
                double tube_radius = 0);
 

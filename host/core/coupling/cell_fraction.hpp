@@ -31,8 +31,9 @@ bool clear_around(const BoundingBox<D>& box, CellFraction<D>& fraction);
 /// twice, 2. The sum of all values is the enclosed area.
 void cover(const Membranes& membranes, int cell, CellFraction<2>& fraction);
 
-/// The fraction along four lines through each cube, parallel to x, of which it is the mean: exact along them, so that the
-/// sum of all values is the enclosed volume up to an error of second order. Where a surface overlaps itself twice it is 2.
+/// The fraction along four lines through each cube, parallel to x, of which it is the mean: exact along them, so that
+/// the sum of all values is the enclosed volume up to an error of second order. Where a surface overlaps itself twice
+/// it is 2.
 void cover(const Surfaces& surfaces, int cell, CellFraction<3>& fraction);
 
 /// One pass of (1 2 1)/4 along each axis; keeps the sum.

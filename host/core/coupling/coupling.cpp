@@ -82,7 +82,8 @@ void Coupling<T, D>::spread(Range rows, const Cells<D>& cells, const Vectors& fo
   });
 }
 
-// Spreading stops and goes, and visits an outline's nodes from four sides: no prefetcher follows it, while it follows this.
+// Spreading stops and goes, and visits an outline's nodes from four sides: no prefetcher follows it, while it follows
+// this.
 template <class T, int D>
 void Coupling<T, D>::warm(const CellRange& cell, const Vectors& vectors) const {
   const auto touch = [](const auto* values, int i) {

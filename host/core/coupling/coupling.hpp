@@ -33,8 +33,8 @@ class Coupling {
 
   /// Pass over cells: weights for these positions, the membranes' own or where a correction puts their forces.
   void locate(Worker worker, const Cells<D>& cells, const Vectors& positions, Whose whose = Whose::own);
-  /// Pass over rows of the block: adds these forces of all nodes to the force density there. The sums do not depend on how
-  /// rows are shared out, nor on the block.
+  /// Pass over rows of the block: adds these forces of all nodes to the force density there. The sums do not depend on
+  /// how rows are shared out, nor on the block.
   void spread(Range rows, const Cells<D>& cells, const Vectors& forces, VectorField<T, D>& force) const;
   /// Pass over cells: sets the velocities of the nodes whose base node lies in the block, of cells that reach it.
   void interpolate(Worker worker, Cells<D>& cells, const VectorField<T, D>& velocity, Whose whose = Whose::own) const;

@@ -99,9 +99,10 @@ constexpr std::array<double, 6> sharpened(const double (&of)[4], double share) {
   return sharp;
 }
 
-/// Peskin4 less 0.262 times its second difference. Peskin4 has a second moment, in the mean over places 0.524 spacings^2
-/// (0.500 to 0.543), by which it smooths all that varies along a membrane and across it; that mean is 0 here. There is no
-/// first moment, and even and odd nodes share as in Peskin4, which keeps the pressure from leaking. Weights reach -0.071.
+/// Peskin4 less 0.262 times its second difference. Peskin4 has a second moment, in the mean over places 0.524
+/// spacings^2 (0.500 to 0.543), by which it smooths all that varies along a membrane and across it; that mean is 0
+/// here. There is no first moment, and even and odd nodes share as in Peskin4, which keeps the pressure from leaking.
+/// Weights reach -0.071.
 struct Sharp6 : Peskin4 {
   static constexpr int first = -2, points = 6;
   static constexpr KernelResponse response{.gain = 1.43, .stretching = 1.43, .bending = 4.54};
@@ -126,8 +127,8 @@ struct Line {
   ROULEAU_ALWAYS_INLINE friend Line operator+(const Line& a, const Line& b) { return {a.lanes + b.lanes}; }
   [[nodiscard]] ROULEAU_ALWAYS_INLINE T at(int k) const { return lanes.vector[k]; }
   static constexpr int spare = Lanes::size - points;
-  /// How many of the spare lanes are to lie before a kernel's first point, which is there: so many that a line of the cache holds
-  /// all, if it holds the points. What crosses a border of these takes twice as long.
+  /// How many of the spare lanes are to lie before a kernel's first point, which is there: so many that a line of the
+  /// cache holds all, if it holds the points. What crosses a border of these takes twice as long.
   [[nodiscard]] ROULEAU_ALWAYS_INLINE static int lanes_before(const T* first_point) {
     if constexpr (spare == 0) return 0;
     constexpr int cached = 64 / sizeof(T);

@@ -6,9 +6,9 @@ namespace rouleau::core {
 
 namespace {
 
-// Each number of the lattice gets its terms in an order that does not depend on blocks, bands and workers: cell by cell,
-// in a cell as spread() visits its nodes, of a node by rows. What lies beyond a border is added to the node that it is an
-// image of, at once, never summed apart.
+// Each number of the lattice gets its terms in an order that does not depend on blocks, bands and workers: cell by
+// cell, in a cell as spread() visits its nodes, of a node by rows. What lies beyond a border is added to the node that
+// it is an image of, at once, never summed apart.
 template <class T, class Kernel>
 struct Spread {
   template <int register_bytes>

@@ -27,8 +27,8 @@ class SlipCorrection {
 
   /// Pass over cells: directions at the present positions, and where the nodes touch the lattice.
   void measure(Worker worker, const Membranes& membranes, Whose whose = Whose::own);
-  /// Pass over cells, once the forces on them are complete: the slip, and what is to be spread, forces(). Both are made of
-  /// all forces on a node: where these balance, everything comes to rest.
+  /// Pass over cells, once the forces on them are complete: the slip, and what is to be spread, forces(). Both are made
+  /// of all forces on a node: where these balance, everything comes to rest.
   void complete(Worker worker, const Membranes& membranes);
   /// Pass over cells: turns velocities interpolated at the touching points into those of the membrane.
   void correct(Worker worker, Membranes& membranes);

@@ -94,7 +94,8 @@ struct Locate {
   }
 
  private:
-  /// Of the first `valid` nodes of a pack; returns the base along the last axis. Half a spacing beyond a wall is not outside.
+  /// Of the first `valid` nodes of a pack; returns the base along the last axis. Half a spacing beyond a wall is not
+  /// outside.
   template <class S>
   ROULEAU_ALWAYS_INLINE static S base(const LocateTask<T, D>& t, int i, int valid) {
     const S none = outside;

@@ -19,9 +19,9 @@ std::array<const double*, n> to_read(double* const (&arrays)[n]) {
 
 }  // namespace
 
-// Slip is smoothed by B = 1 - s/3 (surface_slip_smoothing): M, the mass matrix of hat functions, over A, its row sums, is 1 - s/8.
-// That is symmetric over areas, and its polynomial is not negative, so that slip never gives energy: a sum over k from 0 to n - 1
-// of (n - k) (2 - [k = 0]) T_k/n^2.
+// Slip is smoothed by B = 1 - s/3 (surface_slip_smoothing): M, the mass matrix of hat functions, over A, its row sums,
+// is 1 - s/8. That is symmetric over areas, and its polynomial is not negative, so that slip never gives energy: a sum
+// over k from 0 to n - 1 of (n - k) (2 - [k = 0]) T_k/n^2.
 SurfaceSlip::Shared::Shared(const Mesh& of, int order)
     : mesh(of), neighbours(neighbours_of(of)), own(static_cast<std::size_t>(of.node_count()), -1.0 / 3) {
   for (const int edge : of.node_edges().entry) {

@@ -15,9 +15,9 @@
 namespace rouleau::core {
 
 /// With the outer normal n, P = 1 - n n and F = F_n n + F_t all forces on a node: forces act and velocities are read at
-/// X - d n; the dipole -d n (x) F that this brings is made isotropic and symmetric by another, -d [F_n P + F_t (x) n], of
-/// forces on the nodes around; velocities are turned by the adjoint of that. A node then gains the slip `slip / viscosity x`
-/// tangential force per area, smoothed along the membrane (docs: physics, slip correction).
+/// X - d n; the dipole -d n (x) F that this brings is made isotropic and symmetric by another, -d [F_n P + F_t (x) n],
+/// of forces on the nodes around; velocities are turned by the adjoint of that. A node then gains the slip `slip /
+/// viscosity x` tangential force per area, smoothed along the membrane (docs: physics, slip correction).
 class SurfaceSlip {
  public:
   /// What the correction has to know of a cell type, lattice units.

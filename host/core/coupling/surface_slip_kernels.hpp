@@ -1,5 +1,5 @@
-// The loops over the triangles and nodes of one cell that its slip correction consists of, for any width of vector registers.
-// Arrays of triangles have room for a whole pack behind their end.
+// The loops over the triangles and nodes of one cell that its slip correction consists of, for any width of vector
+// registers. Arrays of triangles have room for a whole pack behind their end.
 #pragma once
 
 #include <rouleau/pack.hpp>
@@ -123,9 +123,9 @@ struct ForcesAlong {
   }
 };
 
-/// Nodes: R with P M R = P on tangents, M = 1 - covered/area the mean projection of the triangles around a node: then couples have
-/// no torque. Where the surface is folded so that there is none, R is the identity. And the forces over areas: normal, tangential,
-/// and the latter turned by R.
+/// Nodes: R with P M R = P on tangents, M = 1 - covered/area the mean projection of the triangles around a node: then
+/// couples have no torque. Where the surface is folded so that there is none, R is the identity. And the forces over
+/// areas: normal, tangential, and the latter turned by R.
 struct TurnForces {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const SlipArrays* arrays) {
@@ -186,8 +186,8 @@ struct MakeCouples {
   }
 };
 
-/// Triangles: what the adjoint of the couples makes of velocities, at each corner: with G the gradient of the velocity along the
-/// triangle times its area and n the node's normal, P G n + n tr G.
+/// Triangles: what the adjoint of the couples makes of velocities, at each corner: with G the gradient of the velocity
+/// along the triangle times its area and n the node's normal, P G n + n tr G.
 struct MakeTurns {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const SlipArrays* arrays) {
@@ -208,7 +208,8 @@ struct MakeTurns {
   }
 };
 
-/// Nodes: turns velocities by what the triangles around have in `turned`: R of its tangential part, and its normal part.
+/// Nodes: turns velocities by what the triangles around have in `turned`: R of its tangential part, and its normal
+/// part.
 struct TurnVelocities {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const SlipArrays* arrays) {

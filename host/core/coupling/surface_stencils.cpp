@@ -59,7 +59,8 @@ struct SpreadSurface {
       add<false>(t, weights, {fx, fy, fz}, corner - before, first);
     }
   }
-  /// Adds to the nodes from `at` on: to all of them, or to those in rows that are to be added to; `first` is that of `at`.
+  /// Adds to the nodes from `at` on: to all of them, or to those in rows that are to be added to; `first` is that of
+  /// `at`.
   template <bool whole>
   ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T, 3>& t, const StencilWeights<T, Kernel>& weights,
                                         const std::array<Forces, 3>& force, std::ptrdiff_t at, int first) {
@@ -89,8 +90,8 @@ struct SpreadSurface {
     const int wrapped = domain.wrapped(axis, node);
     return wrapped >= 0 ? Image{wrapped, 1} : Image{mirrored(node, domain.size[axis]), -1};
   }
-  /// The same sums: of a stencil that reaches over the border of the lattice or of the block. Where it does so along x, its points
-  /// are among the first and the last nodes of a row.
+  /// The same sums: of a stencil that reaches over the border of the lattice or of the block. Where it does so along x,
+  /// its points are among the first and the last nodes of a row.
   ROULEAU_ALWAYS_INLINE static void spread_at_border(const SpreadTask<T, 3>& t, int i) {
     if (t.at.base[2][i] == outside) return;
     const Domain<3>& domain = *t.domain;

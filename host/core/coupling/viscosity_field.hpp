@@ -13,9 +13,10 @@
 
 namespace rouleau::core {
 
-/// How viscosities inside and outside are averaged where a membrane cuts what belongs to a node, I of which lies inside:
-/// arithmetic: mu_row + sum over cells (mu_inside - mu_row) I; harmonic: the same of 1/mu. mu_row is that of the fluid at
-/// this height, which is the suspending fluid's but in layers: what is inside a cell is the same wherever it swims.
+/// How viscosities inside and outside are averaged where a membrane cuts what belongs to a node, I of which lies
+/// inside: arithmetic: mu_row + sum over cells (mu_inside - mu_row) I; harmonic: the same of 1/mu. mu_row is that of
+/// the fluid at this height, which is the suspending fluid's but in layers: what is inside a cell is the same wherever
+/// it swims.
 enum class ViscosityMean { arithmetic, harmonic };
 
 /// tau = 1/2 + (tau_outside - 1/2) mu / mu_outside, kept as 1/tau; outside: of the suspending fluid.
@@ -70,7 +71,8 @@ class ViscosityField {
   /// Calls function(row, columns, place) for those of the rows, counted by `place`, that are rows `own` of the block.
   template <class Function>
   void for_rows(const Rows& rows, Range own, Function function) const;
-  /// Calls function(x, begin, end) for pieces [begin, end) of a row that lie side by side in the block, from its column x on.
+  /// Calls function(x, begin, end) for pieces [begin, end) of a row that lie side by side in the block, from its column
+  /// x on.
   template <class Function>
   void for_pieces(Interval columns, Function function) const;
   /// Viscosity around the cells in a row of the block, over the suspending fluid's.

@@ -10,9 +10,9 @@ namespace rouleau::core {
 void cover(const Surfaces& surfaces, int cell, CellFraction<3>& fraction) {
   if (!clear_around(box_of<3>(surfaces, cell), fraction)) return;
   const Nodes nodes = surfaces.nodes(cell);
-  // Lines lie a quarter and three quarters into a cube, line number n at first + n/2 - 1/4. Where one leaves the surface
-  // at x, all nodes to the left gain what lies between them and x; where it enters, they lose it. What a whole node
-  // gains is noted at the place of the crossing alone, and summed from right to left.
+  // Lines lie a quarter and three quarters into a cube, line number n at first + n/2 - 1/4. Where one leaves the
+  // surface at x, all nodes to the left gain what lies between them and x; where it enters, they lose it. What a whole
+  // node gains is noted at the place of the crossing alone, and summed from right to left.
   for (const auto& corner : surfaces.type_of(cell).mesh.triangles()) {
     const Vec<3> a = nodes[corner[0]], b = nodes[corner[1]], c = nodes[corner[2]];
     const auto line_from = [&](int axis, double place) {

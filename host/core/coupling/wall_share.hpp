@@ -23,10 +23,11 @@ struct StencilAlong {
   }
 };
 
-/// A force F spread with the weight w beyond a plane wall comes back as -w F: the fluid lacks 2 w F, which the wall takes. For
-/// the fluid's velocity there is 2 u_wall - u, so that moving the node costs the wall's motion just that force. The walls'
-/// stress is then exact for any kernel without first moment: a force at the height h acts on the lower wall by 1 - h/H.
-/// Beyond walls across y and z the velocity is u - 2 u_wall: that share is taken from the wall across y. A solid node keeps all.
+/// A force F spread with the weight w beyond a plane wall comes back as -w F: the fluid lacks 2 w F, which the wall
+/// takes. For the fluid's velocity there is 2 u_wall - u, so that moving the node costs the wall's motion just that
+/// force. The walls' stress is then exact for any kernel without first moment: a force at the height h acts on the
+/// lower wall by 1 - h/H. Beyond walls across y and z the velocity is u - 2 u_wall: that share is taken from the wall
+/// across y. A solid node keeps all.
 template <int D>
 void add_wall_share(const std::array<double, D>& force, const std::array<StencilAlong, D>& stencil,
                     const Domain<D>& domain, const SolidNodes<D>* solid, WallForceSums<D>& sums) {

@@ -12,8 +12,8 @@
 
 namespace rouleau::core {
 
-/// Rows of the lattice that are wanted at once: boxes that reach all along its first axis. Their nodes count box after box,
-/// and in a box row after row.
+/// Rows of the lattice that are wanted at once: boxes that reach all along its first axis. Their nodes count box after
+/// box, and in a box row after row.
 template <int D>
 using Band = std::vector<Box<D>>;
 
@@ -66,9 +66,9 @@ Bands<D> bands_of_all(const std::array<int, D>& size, std::size_t bytes_of_node,
 inline constexpr int bands_ahead = 3;
 
 /// Calls take(b, values) for one band after another on the first rank, with a vector<V> of the values of all its nodes,
-/// which is used again for the next band. copy(i, to) writes row i of the rank's block, a value for each of its nodes. All
-/// ranks call it together, one thread of each; `domain` is this rank's, as in Ranks::blocks. No rank holds more than some
-/// bands at a time: one that computes faster than the first rank writes waits for it.
+/// which is used again for the next band. copy(i, to) writes row i of the rank's block, a value for each of its nodes.
+/// All ranks call it together, one thread of each; `domain` is this rank's, as in Ranks::blocks. No rank holds more
+/// than some bands at a time: one that computes faster than the first rank writes waits for it.
 template <class V, int D, class Copy, class Take>
 void gather_bands(const Ranks<D>& ranks, const Domain<D>& domain, const Bands<D>& bands, Copy copy, Take take) {
   const Box<D>& own = domain.block;

@@ -43,9 +43,9 @@ double distance_along_axes(const BoundingBox<D>& a, const BoundingBox<D>& b, con
   return largest;
 }
 
-/// The nodes of the lattice that lie within a reach of a box, along the first axis in whole groups of so many nodes: in one
-/// box for each part over a periodic border; beyond walls there are none, and what has left the domain is taken for the
-/// nodes beside the wall. Calls function(Box).
+/// The nodes of the lattice that lie within a reach of a box, along the first axis in whole groups of so many nodes: in
+/// one box for each part over a periodic border; beyond walls there are none, and what has left the domain is taken for
+/// the nodes beside the wall. Calls function(Box).
 template <int D, class Function>
 void for_nodes_near(const BoundingBox<D>& box, double reach, int group, const Domain<D>& domain, Function function) {
   Box<D> part[2];  // along each axis, and whether there is a second one

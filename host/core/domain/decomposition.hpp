@@ -55,10 +55,10 @@ class Decomposition {
     const Decomposition* blocks = nullptr;
     std::vector<double> factor = {};
   };
-  /// As many blocks as wanted, by cutting what is left again and again, where the border costs least, so that both parts cost
-  /// what the numbers of their blocks ask for: a node 1, and each of the points `point_cost` more. Along the first axis cuts
-  /// lie at multiples of 16 nodes where there is room for that. Throws std::invalid_argument for more blocks than blocks
-  /// of 16 nodes have room.
+  /// As many blocks as wanted, by cutting what is left again and again, where the border costs least, so that both
+  /// parts cost what the numbers of their blocks ask for: a node 1, and each of the points `point_cost` more. Along the
+  /// first axis cuts lie at multiples of 16 nodes where there is room for that. Throws std::invalid_argument for more
+  /// blocks than blocks of 16 nodes have room.
   static Decomposition bisected(const Domain<D>& whole, int ranks, const std::vector<std::array<int, D>>& points = {},
                                 double point_cost = 0, const Measured& measured = {}) {
     if (ranks < 1 || whole.nodes() / least_nodes < ranks)
@@ -156,8 +156,8 @@ class Decomposition {
     }
     return slices;
   }
-  /// What a cut costs both sides, as a step of so many nodes does: numbers beside each other in memory are sent at little
-  /// cost, those of a border across rows lie alone, and more so where blocks are larger than a cache (measured:
+  /// What a cut costs both sides, as a step of so many nodes does: numbers beside each other in memory are sent at
+  /// little cost, those of a border across rows lie alone, and more so where blocks are larger than a cache (measured:
   /// docs/scaling.md); and points near it are known twice.
   static double border_cost(const Box<D>& box, int axis, int at, const std::vector<long>& points, double point_cost,
                             int parts) {
@@ -172,8 +172,8 @@ class Decomposition {
     int at;            ///< slices from the box's beginning
     double off_share;  ///< by how much the cost below misses what is wanted there
   };
-  /// Where a cut across an axis lies. Each part has room for its blocks where whole slices allow; and the cut a round place,
-  /// where there is one.
+  /// Where a cut across an axis lies. Each part has room for its blocks where whole slices allow; and the cut a round
+  /// place, where there is one.
   static Place place_of_cut(const Box<D>& box, int axis, int lower_parts, int upper_parts,
                             const std::vector<double>& cost) {
     const int size = box.size(axis), parts = lower_parts + upper_parts;

@@ -8,9 +8,9 @@
 
 namespace rouleau::core {
 
-/// Each term is rounded to a multiple of 2^-120; the multiples are added as integers, those of 2^-80 and what is left apart.
-/// So blocks, ranks and threads may each sum what they have. Terms below 2^46 in size; with any other the sum is not a
-/// number.
+/// Each term is rounded to a multiple of 2^-120; the multiples are added as integers, those of 2^-80 and what is left
+/// apart. So blocks, ranks and threads may each sum what they have. Terms below 2^46 in size; with any other the sum is
+/// not a number.
 class ExactSum {
  public:
   void add(double term) {
@@ -36,8 +36,8 @@ class ExactSum {
     return valid_ ? static_cast<double>(units_) * 0x1p-80 + static_cast<double>(least_) * 0x1p-120 : std::nan("");
   }
 
-  /// What a term is split into: a multiple of 2^-40, of what is left a multiple of 2^-80, and of the rest one of 2^-120, for
-  /// terms below `small`. Up to small / size of such parts have an exact sum as doubles.
+  /// What a term is split into: a multiple of 2^-40, of what is left a multiple of 2^-80, and of the rest one of
+  /// 2^-120, for terms below `small`. Up to small / size of such parts have an exact sum as doubles.
   static constexpr double small = 0x1p11;
   template <class S>
   [[gnu::always_inline]] static S high_part(const S& term) {

@@ -58,8 +58,8 @@ class Halo {
 
   /// Whether all that a rank is sent is known early.
   [[nodiscard]] bool early(std::size_t rank) const { return peers_[rank].early; }
-  /// Sends what goes this way, to the ranks that `wanted` holds for. `arrays[c]`: where component c of the node with offset
-  /// 0 lies.
+  /// Sends what goes this way, to the ranks that `wanted` holds for. `arrays[c]`: where component c of the node with
+  /// offset 0 lies.
   template <class Wanted>
   void begin(Way way, std::span<T* const> arrays, Wanted wanted) {
     for (std::size_t rank = 0; rank < peers_.size(); ++rank) {
@@ -113,8 +113,8 @@ class Halo {
         runs.push_back({component, 1, offset});
       }
     }
-    /// Calls function(bytes, run, run.count) for all runs and where they lie in a message. A number alone is common, and
-    /// cheaper when the compiler knows it.
+    /// Calls function(bytes, run, run.count) for all runs and where they lie in a message. A number alone is common,
+    /// and cheaper when the compiler knows it.
     template <class Bytes, class Function>
     void for_runs(Bytes* bytes, Function function) const {
       for (const Run& run : runs) {
@@ -136,9 +136,9 @@ class Halo {
   std::vector<Peer> peers_;  // of each rank
 };
 
-/// Calls function(node, out) for the nodes around a block, `below` nodes deep on its lower sides and `above` on the upper
-/// ones, that the block does not reach by its own periodic images alone and that do not lie beyond a wall. `out`: -1, 0
-/// or 1 along every axis, by where the node lies outside.
+/// Calls function(node, out) for the nodes around a block, `below` nodes deep on its lower sides and `above` on the
+/// upper ones, that the block does not reach by its own periodic images alone and that do not lie beyond a wall. `out`:
+/// -1, 0 or 1 along every axis, by where the node lies outside.
 template <int D, class Function>
 void for_halo_nodes(const Domain<D>& domain, int below, int above, Function function) {
   const Box<D>& block = domain.block;

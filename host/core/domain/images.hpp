@@ -17,9 +17,9 @@ struct ImageShift {
   [[nodiscard]] ImageShift operator-() const { return {-x, -y, -z}; }
 };
 
-/// Calls visit(ImageShift) for every image of `b` that comes within `reach` of box `a`, in a fixed order. Boxes that are
-/// not usable() have no images. If it visits a shift for (a, b), it visits the opposite one for (b, a), whatever the
-/// rounding: IEEE subtraction and division are symmetric under change of sign.
+/// Calls visit(ImageShift) for every image of `b` that comes within `reach` of box `a`, in a fixed order. Boxes that
+/// are not usable() have no images. If it visits a shift for (a, b), it visits the opposite one for (b, a), whatever
+/// the rounding: IEEE subtraction and division are symmetric under change of sign.
 template <int D, class Visit>
 void for_each_image(const BoundingBox<D>& a, const BoundingBox<D>& b, double reach, const Domain<D>& domain,
                     Visit visit) {

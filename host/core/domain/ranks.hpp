@@ -137,8 +137,8 @@ std::vector<V> to_first(const Ranks<D>& ranks, std::vector<V> mine) {
   return mine;
 }
 
-/// Up the tree to the first rank, whose values are then those of all: take_in(mine, other) makes one of two, in whatever
-/// order. All have as many.
+/// Up the tree to the first rank, whose values are then those of all: take_in(mine, other) makes one of two, in
+/// whatever order. All have as many.
 template <class V, int D, class TakeIn>
 void join(const Ranks<D>& ranks, std::vector<V>& values, TakeIn take_in) {
   if (!ranks.several()) return;
@@ -159,8 +159,8 @@ void add_up(const Ranks<D>& ranks, std::vector<ExactSum>& sums) {
   sums = of_first(ranks, std::move(sums));
 }
 
-/// Calls function(at, count) for each row of what a box has in common with another, in their order: where it begins among
-/// the nodes of the box, row after row, and how long it is.
+/// Calls function(at, count) for each row of what a box has in common with another, in their order: where it begins
+/// among the nodes of the box, row after row, and how long it is.
 template <int D, class Function>
 void for_common_rows(const Box<D>& box, const Box<D>& other, Function function) {
   if (!box.meets(other)) return;

@@ -34,8 +34,8 @@ class Transport {
   virtual void abandon() noexcept = 0;
 };
 
-/// Ranks in one process, their messages copied in memory; each end may be used by a thread of its own. For tests, and to
-/// see what blocks cost.
+/// Ranks in one process, their messages copied in memory; each end may be used by a thread of its own. For tests, and
+/// to see what blocks cost.
 std::vector<std::unique_ptr<Transport>> make_loopback(int ranks);
 
 }  // namespace rouleau::core

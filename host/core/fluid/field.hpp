@@ -11,8 +11,8 @@
 namespace rouleau::core {
 
 /// A value for each node of a block, and a halo of `halo` nodes on every side. Rows lie along x and start on 64-byte
-/// boundaries at x = 0, an odd number of these apart: the rows above and behind each other that a stencil reads would share few
-/// places of a cache else.
+/// boundaries at x = 0, an odd number of these apart: the rows above and behind each other that a stencil reads would
+/// share few places of a cache else.
 template <class T, int D>
 class Field {
  public:

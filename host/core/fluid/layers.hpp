@@ -8,8 +8,8 @@
 
 namespace rouleau::core {
 
-/// The fluid between two heights. Lattice units; `from` and `to` from the lower edge of the lattice, half a spacing below
-/// the first row of nodes.
+/// The fluid between two heights. Lattice units; `from` and `to` from the lower edge of the lattice, half a spacing
+/// below the first row of nodes.
 struct Layer {
   double from, to;
   double viscosity_ratio;  ///< over the suspending fluid's

@@ -17,9 +17,9 @@ struct MovingFrameTask {
   int count;
 };
 
-/// Without its quadratic terms the equilibrium makes du/dt of the momentum balance, and that is not the same for all who
-/// look on: a cell that travels at U through a fluid at rest is another problem than one at rest in a fluid that passes
-/// at -U. With the quadratic terms Q(u, u) the balance has Du/Dt, which is; and with Q(u, u) - Q(u - U, u - U) =
+/// Without its quadratic terms the equilibrium makes du/dt of the momentum balance, and that is not the same for all
+/// who look on: a cell that travels at U through a fluid at rest is another problem than one at rest in a fluid that
+/// passes at -U. With the quadratic terms Q(u, u) the balance has Du/Dt, which is; and with Q(u, u) - Q(u - U, u - U) =
 /// 2 Q(u, U) - Q(U, U) it has du/dt as seen from the frame that moves at U, which is du/dt + U.grad u. A collision
 /// relaxes towards these terms with the rate of the viscous stress; the force F that acts in it has Q(U, F) in the same
 /// way (Guo's source). So they can be added behind any collision operator:

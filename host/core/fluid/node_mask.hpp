@@ -38,8 +38,8 @@ class NodeMask {
   /// outside the block are left out.
   void mark(int y, int begin, int end);
 
-  /// Calls function(MaskSpan) for the spans of row y, left to right, covering [0, nx) exactly, but for solid nodes. A row
-  /// of nothing else has an empty span.
+  /// Calls function(MaskSpan) for the spans of row y, left to right, covering [0, nx) exactly, but for solid nodes. A
+  /// row of nothing else has an empty span.
   template <class Function>
   void for_spans(int y, Function function) const {
     for (const MaskSpan& span : spans_[y]) function(span);
@@ -91,8 +91,8 @@ class NodeMask {
     return word * bits_per_word + std::countr_zero(changed);
   }
 
-  /// The bit of node x of the block. Bits stand for the same nodes of the lattice whatever the block, since who computes
-  /// with what is active must come to the same numbers in all blocks.
+  /// The bit of node x of the block. Bits stand for the same nodes of the lattice whatever the block, since who
+  /// computes with what is active must come to the same numbers in all blocks.
   [[nodiscard]] int bit_of(int x) const { return (x + first_) / nodes_per_bit; }
   /// Nodes [begin, end) of the lattice.
   void mark_nodes(std::uint64_t* row, int begin, int end);

@@ -16,9 +16,9 @@ inline void for_slots(int sign, Function function) {
   });
 }
 
-/// Whether a row lies at an end of an axis across x that slot q is streamed in from, which must be the block's own other
-/// end: `across` becomes the row of the halo that stands for it there. False: nothing comes to this slot, or it does not
-/// come across such an end.
+/// Whether a row lies at an end of an axis across x that slot q is streamed in from, which must be the block's own
+/// other end: `across` becomes the row of the halo that stands for it there. False: nothing comes to this slot, or it
+/// does not come across such an end.
 template <class T, class Set>
 bool comes_across(const Lattice<T, Set>& lattice, int q, const typename Lattice<T, Set>::Row& row,
                   typename Lattice<T, Set>::Row& across) {
@@ -53,8 +53,8 @@ bool at_border(const Lattice<T, Set>& lattice, const typename Lattice<T, Set>::R
   return false;
 }
 
-/// Copies between a row and the rows of the halo that stand for it, with the halo at their ends if it is the block's own.
-/// What comes from beyond a side that is another block's is not there to be copied.
+/// Copies between a row and the rows of the halo that stand for it, with the halo at their ends if it is the block's
+/// own. What comes from beyond a side that is another block's is not there to be copied.
 template <class T, class Set>
 void copy_across(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row, bool out) {
   if (!at_border(lattice, row)) return;
@@ -171,8 +171,8 @@ void mirror_velocity(VectorField<T, D>& velocity, const Domain<D>& domain, const
       image.row[axis - 1] = to;
       write_image(velocity[component], row, image);
     };
-    // Of each of the rows beside each other across the other axis, its halo included. A wall may lie in the halo of a block
-    // that does not touch it.
+    // Of each of the rows beside each other across the other axis, its halo included. A wall may lie in the halo of a
+    // block that does not touch it.
     Box<D> columns = domain.block;
     for (int k = 1; k < D; ++k) columns.end[k] = columns.begin[k] + (k == axis ? 1 : velocity[0].size(k) + 2 * width);
     for (int i = 0; i < row_count(columns); ++i) {

@@ -1,5 +1,5 @@
-// Where a block is its own periodic neighbour: numbers are copied to and from its halo row by row, by the worker who owns
-// the row and while the row is in the cache. What belongs to other blocks goes through Halo (domain/halo.hpp).
+// Where a block is its own periodic neighbour: numbers are copied to and from its halo row by row, by the worker who
+// owns the row and while the row is in the cache. What belongs to other blocks goes through Halo (domain/halo.hpp).
 #pragma once
 
 #include "core/domain/domain.hpp"

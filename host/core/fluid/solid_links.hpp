@@ -9,8 +9,8 @@
 
 namespace rouleau::core {
 
-/// The links of a block that lead from a fluid node to a solid one. With velocity q away from the wall, w = -q towards it,
-/// and a wall at the share s of the link, what comes back to node x is
+/// The links of a block that lead from a fluid node to a solid one. With velocity q away from the wall, w = -q towards
+/// it, and a wall at the share s of the link, what comes back to node x is
 ///
 ///     f_q(x, t + 1) = f'_w(x, t) + k (f_w(x, t + 1) - f'_q(x, t)),   k = (1 - 2 s)/(1 + 2 s),
 ///
@@ -18,9 +18,9 @@ namespace rouleau::core {
 /// (central linear interpolation: Ginzburg, Verhaeghe, d'Humieres, Commun. Comput. Phys. 3, 427, 2008). Without a fluid
 /// node on the other side of x, k is 0.
 ///
-/// Solid nodes are not collided, so the slots that would stream between them and x are free: before an odd step of a row
-/// each of its links puts what comes back into the slot that the collision reads. No link touches what another one, or a
-/// collision, does.
+/// Solid nodes are not collided, so the slots that would stream between them and x are free: before an odd step of a
+/// row each of its links puts what comes back into the slot that the collision reads. No link touches what another one,
+/// or a collision, does.
 template <class T, class Set>
 class SolidLinks {
  public:

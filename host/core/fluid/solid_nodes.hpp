@@ -22,8 +22,8 @@ class SolidNodes {
   /// Share of the link from a fluid node to the solid one at `node + to` that lies in the fluid, in (0, 1].
   using Cut = std::function<double(const Node& node, const Node& to)>;
 
-  /// Without `cut` walls are half way: no mass is lost, and velocities are of first order. With it they are interpolated,
-  /// of second order; then links that leave the domain are cut, too.
+  /// Without `cut` walls are half way: no mass is lost, and velocities are of first order. With it they are
+  /// interpolated, of second order; then links that leave the domain are cut, too.
   SolidNodes(const Node& size, const std::function<bool(const Node&)>& is_solid, Cut cut = {})
       : size_(size), cut_(std::move(cut)) {
     const Box<D> all{{}, size};

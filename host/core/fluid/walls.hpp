@@ -58,7 +58,8 @@ void add_wall_momentum(Lattice<T, Set>& lattice, const typename Lattice<T, Set>:
 
 /// What a row beyond a wall is made of: the node of the fluid that it mirrors, and the wall's velocity. A force spread
 /// there acts on that node with reversed sign, and the velocity there is 2 u_wall - u: each is the other's adjoint, so
-/// that spreading and interpolation stay adjoint near walls too. The wall takes twice that force (core/coupling/wall_share.hpp).
+/// that spreading and interpolation stay adjoint near walls too. The wall takes twice that force
+/// (core/coupling/wall_share.hpp).
 constexpr int mirrored(int y, int height) { return y < 0 ? -1 - y : 2 * height - 1 - y; }
 
 }  // namespace rouleau::core

@@ -21,8 +21,9 @@ class FacetTree {
     grow(boxes, 0, static_cast<int>(boxes.size()));
   }
 
-  /// Calls `square = visit(i, square)` for boxes i that come nearer than the root of `square`, near halves first; `visit` returns
-  /// the square of the least distance so far. Which order boxes that are as near come in does not depend on the place alone.
+  /// Calls `square = visit(i, square)` for boxes i that come nearer than the root of `square`, near halves first;
+  /// `visit` returns the square of the least distance so far. Which order boxes that are as near come in does not
+  /// depend on the place alone.
   template <class Visit>
   void nearest(const Vec<D>& place, double square, Visit visit) const {
     descend(place, 0, square, visit);

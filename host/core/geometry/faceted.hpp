@@ -10,13 +10,14 @@
 
 namespace rouleau::core {
 
-/// What a border encloses. The sign is that of the angle-weighted normal where the border is nearest (Baerentzen and Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 243, 2005).
+/// What a border encloses. The sign is that of the angle-weighted normal where the border is nearest (Baerentzen and
+/// Aanaes, IEEE Trans. Vis. Comput. Graph. 11, 243, 2005).
 template <int D>
 class FacetedRegion final : public Region<D> {
  public:
   using Facet = std::array<int, D>;
-  /// Where the border is not closed, the region goes on along its last facets. Throws std::invalid_argument for a facet without
-  /// size, or none.
+  /// Where the border is not closed, the region goes on along its last facets. Throws std::invalid_argument for a facet
+  /// without size, or none.
   explicit FacetedRegion(Border<D> border);
 
   [[nodiscard]] Distance<D> distance(const Vec<D>& place) const override;

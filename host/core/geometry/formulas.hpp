@@ -13,8 +13,8 @@ RegionPointer<D> box_region(const Vec<D>& lower, const Vec<D>& upper);
 template <int D>
 RegionPointer<D> ball_region(const Vec<D>& center, double radius);
 
-/// A region of a plane, extended from one height to another along an axis across it; the plane's coordinates are those along
-/// the other two axes, in their order. Infinite heights are no border. A disc becomes a cylinder.
+/// A region of a plane, extended from one height to another along an axis across it; the plane's coordinates are those
+/// along the other two axes, in their order. Infinite heights are no border. A disc becomes a cylinder.
 RegionPointer<3> extruded(RegionPointer<2> section, int axis, double from, double to);
 
 }  // namespace rouleau::core

@@ -21,8 +21,8 @@ template <int D>
 class Region {
  public:
   virtual ~Region() = default;
-  /// Its zero is the border. Elsewhere it is the distance, or less where regions are joined: never more. It is continuous;
-  /// where two parts of the border are as near the gradient is that of one of them.
+  /// Its zero is the border. Elsewhere it is the distance, or less where regions are joined: never more. It is
+  /// continuous; where two parts of the border are as near the gradient is that of one of them.
   [[nodiscard]] virtual Distance<D> distance(const Vec<D>& place) const = 0;
   /// Share of the way from a place inside to one outside, `by` away, at which it meets the border: in [0, 1].
   [[nodiscard]] virtual double share_inside(const Vec<D>& place, const Vec<D>& by) const;
@@ -39,7 +39,8 @@ template <int D>
 RegionPointer<D> intersection(std::vector<RegionPointer<D>> regions);
 template <int D>
 RegionPointer<D> union_of(std::vector<RegionPointer<D>> regions);
-/// A region with its images along the periodic axes of a domain. It must not reach further than one period from the domain.
+/// A region with its images along the periodic axes of a domain. It must not reach further than one period from the
+/// domain.
 template <int D>
 RegionPointer<D> with_images(RegionPointer<D> region, const Domain<D>& domain);
 

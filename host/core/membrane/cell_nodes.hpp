@@ -30,8 +30,8 @@ struct CellPart {
   bool inside;    ///< it owns the cell, and no node touches anything but nodes of its block
 };
 
-/// Which cells a pass is over: those that this rank owns, or what it knows of others'; of its own those inside of its block,
-/// which can do without other ranks, or those at its borders: all of the only rank's.
+/// Which cells a pass is over: those that this rank owns, or what it knows of others'; of its own those inside of its
+/// block, which can do without other ranks, or those at its borders: all of the only rank's.
 enum class Whose { own, others, own_inside, own_at_borders };
 
 /// Numbers of cells in their order: those of a list, or all, at places [begin, end); of these the owned ones, or all.
@@ -122,8 +122,8 @@ struct CellNodes {
     return part.empty() ? CellNumbers(worker.share(cell_count()), nullptr)
                         : CellNumbers(worker.share(static_cast<int>(known.size())), known.data());
   }
-  /// Those of them that it owns. `worker`: of its share of those that this rank knows, so that a worker meets the same cells
-  /// in one pass after another.
+  /// Those of them that it owns. `worker`: of its share of those that this rank knows, so that a worker meets the same
+  /// cells in one pass after another.
   [[nodiscard]] CellNumbers own_cells() const { return own_cells(Worker{}); }
   [[nodiscard]] CellNumbers own_cells(Worker worker) const {
     return part.empty() ? known_cells(worker)

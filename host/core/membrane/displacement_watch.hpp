@@ -12,8 +12,8 @@
 
 namespace rouleau::core {
 
-/// Largest distance of nodes [nodes.begin, nodes.end) from where they were; NaN if a position is no number. `old`: x, y and z
-/// of all nodes; the last is not read in two dimensions.
+/// Largest distance of nodes [nodes.begin, nodes.end) from where they were; NaN if a position is no number. `old`: x, y
+/// and z of all nodes; the last is not read in two dimensions.
 double largest_displacement(const CellNodes& cells, std::array<const double*, 3> old, Range nodes);
 
 /// Remembers positions and compares. After construction every cell counts as moved.
@@ -54,11 +54,11 @@ class DisplacementWatch {
   };
   [[nodiscard]] const Memory& memory() const { return memory_; }
   [[nodiscard]] Memory& memory() { return memory_; }
-  /// What was remembered of cells that are not known, which have these nodes, is gone, and takes no memory. They have not
-  /// moved.
+  /// What was remembered of cells that are not known, which have these nodes, is gone, and takes no memory. They have
+  /// not moved.
   void forget(const CellNodes& cells, std::span<const Range> nodes);
-  /// Goes on from another watch's memory of the same cells. If something is remembered of them, renew() is called with the
-  /// known cells where they were: makes again what was made then.
+  /// Goes on from another watch's memory of the same cells. If something is remembered of them, renew() is called with
+  /// the known cells where they were: makes again what was made then.
   template <class Renew>
   void recall(Memory memory, CellNodes& cells, Renew renew) {
     if (memory.any(cells)) {

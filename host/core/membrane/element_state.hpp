@@ -36,8 +36,8 @@ struct ContactVariable {
   double initial;
 };
 
-/// Values of one variable for the nodes of one cell against another cell moved by `shift` periods, or against a wall, in
-/// lattice units; initial where a node is not within the cutoff.
+/// Values of one variable for the nodes of one cell against another cell moved by `shift` periods, or against a wall,
+/// in lattice units; initial where a node is not within the cutoff.
 struct ContactState {
   std::size_t variable;  ///< in ContactMemory::variables
   int other;             ///< a cell; of contacts with walls 0: the lower, 1: the upper, in three dimensions also 2, 3:

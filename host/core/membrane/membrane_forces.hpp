@@ -60,7 +60,8 @@ class MembraneForces {
     bool tension, moment, pressure, perimeter_tension, energy, tension_by_rate;                         // its outputs
     std::vector<std::size_t> state;  // in Membranes::state, once kept
   };
-  /// Values of the nodes or segments of one cell, with room on both sides for ghost nodes and packs that run over the end.
+  /// Values of the nodes or segments of one cell, with room on both sides for ghost nodes and packs that run over the
+  /// end.
   class Padded {
    public:
     explicit Padded(int count = 0) : count_(count), values_(static_cast<std::size_t>(count + 3 * margin), 0.0) {}

@@ -13,8 +13,8 @@ namespace rouleau::core {
 /// which must have one value for each cell; NaN where a velocity is no number.
 void move_nodes(Worker worker, CellNodes& cells);
 
-/// Mean of the displacements of all nodes in the last step, of each by its owner; 0 without nodes. The same on all ranks,
-/// which must ask together.
+/// Mean of the displacements of all nodes in the last step, of each by its owner; 0 without nodes. The same on all
+/// ranks, which must ask together.
 template <int D>
 std::array<double, 3> mean_velocity(const CellNodes& cells, const Ranks<D>& ranks);
 

@@ -13,8 +13,8 @@ struct NodeMobility {
 
 /// How a membrane's forces come back to it through the kernel that spreads them and reads velocities.
 struct KernelResponse {
-  /// How many times farther a force moves its own node at once than through the 4-point kernel: the sum of squares of the
-  /// kernel's weights, over 3/8.
+  /// How many times farther a force moves its own node at once than through the 4-point kernel: the sum of squares of
+  /// the kernel's weights, over 3/8.
   double gain = 1;
   /// The largest k^2 f^2 and k^4 f^2, f the kernel's transform: by f^2 less a wave of wave number k pulls at itself.
   double stretching = 0.67, bending = 1.62;

@@ -11,8 +11,8 @@
 namespace rouleau::core {
 
 /// Gives back to the system the pages that lie wholly within parts [begin, end) of `bytes` bytes from `first` on, and
-/// keeps the others small, so that they can be given back one by one. What was there reads as zero, and takes memory again
-/// once it is written to. What is beyond the last byte is left alone.
+/// keeps the others small, so that they can be given back one by one. What was there reads as zero, and takes memory
+/// again once it is written to. What is beyond the last byte is left alone.
 void release_pages(void* first, std::size_t bytes, std::span<const Range> parts, std::size_t bytes_of_element);
 
 /// The same for parts of an array, counted in elements.
@@ -21,7 +21,8 @@ void release(std::vector<V>& values, std::span<const Range> parts) {
   release_pages(values.data(), values.size() * sizeof(V), parts, sizeof(V));
 }
 
-/// Zero bytes that take memory page by page, where one has been written to; std::bad_alloc if there are no addresses left.
+/// Zero bytes that take memory page by page, where one has been written to; std::bad_alloc if there are no addresses
+/// left.
 struct ReleasePages {
   std::size_t bytes = 0;
   void operator()(void* first) const;

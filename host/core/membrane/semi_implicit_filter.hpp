@@ -5,8 +5,8 @@
 
 namespace rouleau::core {
 
-/// Velocity that a node of a membrane gains in a step from a force of 1 on each unit of its measure at rest (length of an
-/// outline, area of a surface): a layer of two spacings goes along.
+/// Velocity that a node of a membrane gains in a step from a force of 1 on each unit of its measure at rest (length of
+/// an outline, area of a surface): a layer of two spacings goes along.
 constexpr double node_mobility = 0.5;
 
 /// Steps over which the mean goes that a semi-implicit step holds: with the largest eigenvalue of m K, and the

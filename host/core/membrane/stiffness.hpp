@@ -7,8 +7,9 @@
 
 namespace rouleau::core {
 
-/// Largest d tension / d stretch of a law of segments, or of one of triangles stretched along one direction, at these stretches, without rate and with its initial state; by
-/// differences of the tension where the law gives no derivative. 0 for other laws. Lattice units.
+/// Largest d tension / d stretch of a law of segments, or of one of triangles stretched along one direction, at these
+/// stretches, without rate and with its initial state; by differences of the tension where the law gives no derivative.
+/// 0 for other laws. Lattice units.
 double stretching_stiffness(const MembraneLaw& law, const std::vector<double>& stretches = {0.95, 1.0, 1.1});
 
 /// Tension of such a law at a stretch, at once; 0 for other laws.

@@ -1,5 +1,5 @@
-// What a solver does with its cells, as who observes, stores or hands on its state sees it, whatever the precision of its
-// populations.
+// What a solver does with its cells, as who observes, stores or hands on its state sees it, whatever the precision of
+// its populations.
 #pragma once
 
 #include <array>
@@ -25,8 +25,8 @@ class AnyCellTasks {
  public:
   virtual ~AnyCellTasks() = default;
 
-  /// Before ranks speak of something else than the next step does, which other workers may have begun: takes the messages of
-  /// the last one.
+  /// Before ranks speak of something else than the next step does, which other workers may have begun: takes the
+  /// messages of the last one.
   virtual void end_messages() = 0;
   /// On all ranks.
   [[nodiscard]] virtual Surroundings<D> surroundings() = 0;
@@ -34,8 +34,8 @@ class AnyCellTasks {
   [[nodiscard]] virtual const GhostCells<D>* ghosts() const = 0;
   /// The boxes of all cells, with which others can find their part in them.
   [[nodiscard]] virtual std::vector<BoundingBox<D>> boxes_of_all() = 0;
-  /// Leaves the cells to a solver with another part in them, or of another setup, and what viscosities were made from. It
-  /// is not to take another step.
+  /// Leaves the cells to a solver with another part in them, or of another setup, and what viscosities were made from.
+  /// It is not to take another step.
   virtual DisplacementWatch::Memory pass_on(const GhostCells<D>& next) = 0;
   /// When viscosities were last renewed.
   [[nodiscard]] virtual const DisplacementWatch::Memory& viscosity_memory() const = 0;

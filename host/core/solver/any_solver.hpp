@@ -17,8 +17,8 @@ namespace rouleau::core {
 
 /// A solver between two steps, as far as setup and cells do not tell it.
 struct SolverState {
-  /// Before the next collision, of each velocity q, exact: of the block's nodes, row after row. Asked for once each, so that
-  /// they need not all be in memory.
+  /// Before the next collision, of each velocity q, exact: of the block's nodes, row after row. Asked for once each, so
+  /// that they need not all be in memory.
   std::function<std::vector<double>(int q)> populations;
   bool walls_have_acted = false;
   /// Taken since the setup's start: what oscillates goes by them.
@@ -29,8 +29,8 @@ struct SolverState {
   DisplacementWatch::Memory viscosity = {};
 };
 
-/// Everything that one setup of D dimensions computes with. Cells belong to the caller and outlive it: the next setup of a
-/// run goes on with them.
+/// Everything that one setup of D dimensions computes with. Cells belong to the caller and outlive it: the next setup
+/// of a run goes on with them.
 template <int D>
 class AnySolver {
  public:
@@ -41,8 +41,8 @@ class AnySolver {
   virtual ~AnySolver() = default;
 
   /// The fluid that the setup asks for: developed, or what `former` left (null: there was none), rescaled with the time
-  /// step: velocities and density deviations of the same flow scale like it. The nodes' velocities with it. `former` is of the
-  /// same precision.
+  /// step: velocities and density deviations of the same flow scale like it. The nodes' velocities with it. `former` is
+  /// of the same precision.
   virtual void start(AnySolver* former = nullptr) = 0;
   /// Goes on from where a solver of this setup and these cells was.
   virtual void start(SolverState state) = 0;
@@ -53,8 +53,9 @@ class AnySolver {
   /// then fluid, interpolation and motion.
   void compute_forces();
   void advance();
-  /// A step, for several workers. Who takes it calls end_messages() between two steps before all ranks speak of something else
-  /// than steps: ranks are done with the messages of the last one then. The other workers may have begun with the next step.
+  /// A step, for several workers. Who takes it calls end_messages() between two steps before all ranks speak of
+  /// something else than steps: ranks are done with the messages of the last one then. The other workers may have begun
+  /// with the next step.
   [[nodiscard]] const StepPasses& passes() const { return passes_; }
   void end_messages() {
     if (auto* const tasks = cell_tasks()) tasks->end_messages();
@@ -75,8 +76,9 @@ class AnySolver {
   }
   /// None where no mean velocity is kept.
   [[nodiscard]] const std::optional<FlowControl>& flow_control() const { return flow_control_; }
-  /// Where the state may be observed, on all ranks: what acts on the walls, the fluid in the last step (AnyFluid::wall_forces)
-  /// and membranes beside them by the forces that they have now; and the shear stresses of that (AnyFluid::wall_stress).
+  /// Where the state may be observed, on all ranks: what acts on the walls, the fluid in the last step
+  /// (AnyFluid::wall_forces) and membranes beside them by the forces that they have now; and the shear stresses of that
+  /// (AnyFluid::wall_stress).
   [[nodiscard]] WallForces<D> wall_forces() const;
   [[nodiscard]] typename AnyFluid<D>::WallStress wall_stress() const;
   /// Whether a node has left the domain, on any rank; and which, of this rank's cells; -1: none.

@@ -42,7 +42,8 @@ class CellTasks final : public AnyCellTasks<D> {
   [[nodiscard]] WallForces<D> wall_share() const override {
     return coupling_.wall_share(cells_, spread_forces(), fluid_.setting().solid.get(), ranks_);
   }
-  /// The frame of the fluid's unsteady term gets the cells' velocity, as far as the walls allow, if the setup wants that.
+  /// The frame of the fluid's unsteady term gets the cells' velocity, as far as the walls allow, if the setup wants
+  /// that.
   void follow(const std::array<double, 3>& velocity);
   void end_messages() override {
     if (exchange_) exchange_->receive_positions(cells_, viscosity_field_.watch());

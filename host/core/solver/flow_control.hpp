@@ -10,8 +10,9 @@ namespace rouleau::core {
 /// By the balance of momentum: the mean velocity u changes as du/dt = F - R, R what the walls take for each volume of
 /// fluid. A look at u every so many steps tells R, the force of the time in between less what u has gained; the next
 /// force is that R, and what brings u to the wanted value within a few such times. R changes slowly, cells or not, so
-/// nothing has to be known of the channel and nothing swings over: in a fluid at rest 2e-3 are left after H^2/(pi^2 nu),
-/// in which a channel starts with a constant force to 1/e. In the end F is what the suspension needs. Lattice units.
+/// nothing has to be known of the channel and nothing swings over: in a fluid at rest 2e-3 are left after H^2/(pi^2
+/// nu), in which a channel starts with a constant force to 1/e. In the end F is what the suspension needs. Lattice
+/// units.
 class FlowControl {
  public:
   /// `guess`: the force that would do without cells.

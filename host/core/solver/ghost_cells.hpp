@@ -12,9 +12,9 @@
 
 namespace rouleau::core {
 
-/// Every cell has one owner, the rank that computes its forces and moves it; it enters no formula, so that any rank will
-/// do. The one whose block the cell is above hears of it least, so that cells which travel change hands. Other ranks know a
-/// cell, as a ghost, whose blocks it may reach or with whose cells it may act, while no node has
+/// Every cell has one owner, the rank that computes its forces and moves it; it enters no formula, so that any rank
+/// will do. The one whose block the cell is above hears of it least, so that cells which travel change hands. Other
+/// ranks know a cell, as a ghost, whose blocks it may reach or with whose cells it may act, while no node has
 /// moved further than the skin since the boxes of all cells were last compared. All ranks find the same from the same
 /// boxes, so that nobody has to say which cells a message is about.
 template <int D>
@@ -31,8 +31,8 @@ class GhostCells {
 
   /// The ranks, in their order, that know a cell with this box for the sake of their blocks.
   static std::vector<int> reached_by(const BoundingBox<D>& box, const Decomposition<D>& blocks, double reach);
-  /// Calls function(c, other) for pairs of cells whose owners know the other one for the sake of their own, of the cells c
-  /// that `wanted` holds for.
+  /// Calls function(c, other) for pairs of cells whose owners know the other one for the sake of their own, of the
+  /// cells c that `wanted` holds for.
   template <class Wanted, class Function>
   static void for_touching(const std::vector<BoundingBox<D>>& boxes, const Domain<D>& domain, double contact,
                            Wanted wanted, Function function) {
@@ -55,8 +55,8 @@ class GhostCells {
   struct Handover {
     int cell, from, to;
   };
-  /// Gives cells whose middle has come `margin` away from their owner's block to the ranks above whose blocks it lies, and
-  /// says which; all ranks find the same. Until renew() peers are the old ones.
+  /// Gives cells whose middle has come `margin` away from their owner's block to the ranks above whose blocks it lies,
+  /// and says which; all ranks find the same. Until renew() peers are the old ones.
   std::vector<Handover> change_owners(const std::vector<BoundingBox<D>>& boxes);
   static constexpr double margin = 4;  ///< spacings: a cell that sways over a border stays where it is
 

@@ -29,7 +29,8 @@ struct Pass {
   /// Instead of `run`, of a pass over rows: any rows of the block. Such passes one after another, with no meeting
   /// between them, are run band by band, so that a band is still in the cache when the next pass wants it.
   std::function<void(Range rows)> run_rows = {};
-  /// Of a pass over rows: one worker, when all have passed those at the ends of the block and before the others (RowBands).
+  /// Of a pass over rows: one worker, when all have passed those at the ends of the block and before the others
+  /// (RowBands).
   std::function<void()> after_ends = {};
   Meeting meeting = Meeting::all;
 };
@@ -91,8 +92,8 @@ class PassClock {
   Clock::time_point last_ = Clock::now();
 };
 
-/// A step as several workers take it. Before pass [observable], after a barrier, the state may be observed; who does not want
-/// to runs the passes from [rows] on without a stop.
+/// A step as several workers take it. Before pass [observable], after a barrier, the state may be observed; who does
+/// not want to runs the passes from [rows] on without a stop.
 struct StepPasses {
   std::vector<Pass> passes;
   std::size_t rows = 0, observable = 0;

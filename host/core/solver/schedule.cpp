@@ -31,7 +31,8 @@ Schedule make_schedule(const StepFeatures& has) {
   add(touch && ghosts, Task::find_contacts, "interaction", Meeting::all);
   add(touch, Task::interaction_forces, "interaction", ranks ? Meeting::all : Meeting::announce);
   add(corrected && !touch, Task::complete_forces, "corrections", Meeting::none);
-  // The frame is found from the velocities of all cells: when all workers have left the last step, and no message is on its way.
+  // The frame is found from the velocities of all cells: when all workers have left the last step, and no message is on
+  // its way.
   const bool frame = cells && has.moving_frame;
   add(frame && touch, Task::follow_cells, "fluid", Meeting::none);
   add(touch && ranks, Task::send_reactions, "ranks", Meeting::none);

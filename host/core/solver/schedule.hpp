@@ -71,8 +71,8 @@ struct StepFeatures {
 /// Whether a task is one over rows of the lattice.
 bool over_rows(Task task);
 
-/// A step. Before step [observable] (and after a barrier) forces and velocities belong to the present positions, and the
-/// state may be observed; from step [rows] on, one may go on to the end of the step without a look at it.
+/// A step. Before step [observable] (and after a barrier) forces and velocities belong to the present positions, and
+/// the state may be observed; from step [rows] on, one may go on to the end of the step without a look at it.
 struct Schedule {
   std::vector<Step> steps;
   std::size_t rows = 0, observable = 0;

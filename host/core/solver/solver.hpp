@@ -25,8 +25,8 @@ class Solver final : public AnySolver<Set::dimension> {
   /// The fluid is at rest until start(); `cells` must outlive the solver. Throws std::invalid_argument for a setup
   /// without nodes or collision operator, and for cells with what their dimension does not have.
   /// `ranks`: who computes the other blocks, if the domain's block is not the whole lattice.
-  /// `ghosts`: of these ranks, with at least ghost_reach(setup): what this one is to know of the cells, of which no more is
-  /// read; none: it is given all of every cell, and owners are found by place.
+  /// `ghosts`: of these ranks, with at least ghost_reach(setup): what this one is to know of the cells, of which no
+  /// more is read; none: it is given all of every cell, and owners are found by place.
   Solver(Setup setup, Cells& cells, const Ranks<dimension>& ranks = {},
          std::optional<GhostCells<dimension>> ghosts = {});
 

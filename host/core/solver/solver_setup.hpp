@@ -34,8 +34,8 @@ struct BasicSolverSetup {
   std::shared_ptr<const SolidNodes<D>> solid = {};
   /// Relaxation time of the suspending fluid in time steps; its kinematic viscosity is (tau - 1/2)/3.
   double tau = 1;
-  /// Parts of the suspending fluid with another viscosity, which do not move. With cells, neither the semi-implicit step nor
-  /// the slip correction: both know of one viscosity.
+  /// Parts of the suspending fluid with another viscosity, which do not move. With cells, neither the semi-implicit
+  /// step nor the slip correction: both know of one viscosity.
   std::vector<Layer> layers = {};
   /// Quadratic equilibrium; false: linear, for creeping flow.
   bool inertia = false;
@@ -46,8 +46,8 @@ struct BasicSolverSetup {
   double body_force_x = 0, body_force_y = 0, body_force_z = 0;
   /// Added to the walls and the body force.
   Oscillation oscillation = {};
-  /// Mean velocity along x of the fluid nodes, between walls at rest, that the body force is adapted to keep, from body_force_x on; 0: the
-  /// force is what it is.
+  /// Mean velocity along x of the fluid nodes, between walls at rest, that the body force is adapted to keep, from
+  /// body_force_x on; 0: the force is what it is.
   double mean_velocity = 0;
   /// Begin with the developed flow of the walls, the body force and, between plane walls across y alone, their
   /// oscillation; false: with a fluid at rest, or the one before.

@@ -23,9 +23,9 @@ class Surroundings {
   Surroundings(const Surroundings&) = delete;
   Surroundings& operator=(const Surroundings&) = delete;
 
-  /// After it this rank knows every cell whose box comes within the reach of that of one of its own which is open, on all
-  /// ranks together; along each axis (distance_along_axes). `open`: of each own cell; empty: all are. False, and nothing
-  /// done, where no cell of any rank is open.
+  /// After it this rank knows every cell whose box comes within the reach of that of one of its own which is open, on
+  /// all ranks together; along each axis (distance_along_axes). `open`: of each own cell; empty: all are. False, and
+  /// nothing done, where no cell of any rank is open.
   bool show(double reach, const std::vector<char>& open = {});
 
   [[nodiscard]] const Cells& cells() const { return cells_; }

@@ -21,8 +21,8 @@ struct LineCrossing {
 /// Where the line at p goes through a triangle, if it does. Of two triangles with a common edge exactly one has a line
 /// through that edge, so that a line enters a closed surface as often as it leaves it.
 inline std::optional<LineCrossing> line_crossing(const Vec<3>& a, const Vec<3>& b, const Vec<3>& c, LinePlace p) {
-  // Twice the area of the triangle (from, to, q), positive where they run counter-clockwise. The same number but for its
-  // sign where from and to change places.
+  // Twice the area of the triangle (from, to, q), positive where they run counter-clockwise. The same number but for
+  // its sign where from and to change places.
   const auto twice_area = [](LinePlace from, LinePlace to, LinePlace q) {
     const bool swapped = to.y < from.y || (to.y == from.y && to.z < from.z);
     if (swapped) std::swap(from, to);

@@ -61,9 +61,9 @@ void Mesh::join_edges() {
                std::to_string(a) + " to node " + std::to_string(b);
       };
       if (const auto same = known.find({a, b}); same != known.end()) {
-        refuse(
-            words(edges_[same->second].left) +
-            " in the same direction: they face opposite sides, or the edge has three triangles\nturn one over, or leave one out");
+        refuse(words(edges_[same->second].left) +
+               " in the same direction: they face opposite sides, or the edge has three triangles\nturn one over, or "
+               "leave one out");
       }
       const auto opposite = known.find({b, a});
       if (opposite == known.end()) {

@@ -12,8 +12,8 @@ namespace rouleau::core {
 /// closed ring of them around it.
 class Mesh {
  public:
-  /// Throws std::invalid_argument, with the triangle or node, for what is no such surface in one piece: a hole, an edge of
-  /// three triangles, triangles that run in opposite directions, a node between two rings or without a triangle.
+  /// Throws std::invalid_argument, with the triangle or node, for what is no such surface in one piece: a hole, an edge
+  /// of three triangles, triangles that run in opposite directions, a node between two rings or without a triangle.
   Mesh(int node_count, std::vector<std::array<int, 3>> triangles);
 
   struct Edge {

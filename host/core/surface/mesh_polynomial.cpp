@@ -18,7 +18,8 @@ struct Degree {
   double coefficient, factor;
 };
 
-// Nodes around one in a mesh of regular triangles. Their sum is written out, in two parts, since each waits for its last term.
+// Nodes around one in a mesh of regular triangles. Their sum is written out, in two parts, since each waits for its
+// last term.
 constexpr int regular = 6;
 
 /// Row i of the product of a matrix and vectors.
@@ -40,7 +41,8 @@ ROULEAU_ALWAYS_INLINE Four product(const NeighbourMatrix& matrix, const double* 
   return one + two;
 }
 
-/// b_k = c_k value + 2 B b_k+1 - b_k+2, written over b_k+2, which of the first that is found so is zero. The last has 1 for 2.
+/// b_k = c_k value + 2 B b_k+1 - b_k+2, written over b_k+2, which of the first that is found so is zero. The last has 1
+/// for 2.
 template <bool first>
 struct NextDegree {
   template <int register_bytes>

@@ -14,8 +14,8 @@ constexpr int padded(int count) {
   return (count + pack_size - 1) / pack_size * pack_size;
 }
 
-/// Numbers of triangles, and of their corners: those of corner k follow each other from k * size on. The last triangle stands for
-/// those that fill the last pack.
+/// Numbers of triangles, and of their corners: those of corner k follow each other from k * size on. The last triangle
+/// stands for those that fill the last pack.
 struct PaddedTriangles {
   explicit PaddedTriangles(const Mesh& mesh);
 

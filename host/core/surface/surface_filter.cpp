@@ -13,13 +13,15 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-/// Minus the Laplacian of the mesh at rest, integrated over the nodes' areas: half the cotangents of the angles across an edge.
+/// Minus the Laplacian of the mesh at rest, integrated over the nodes' areas: half the cotangents of the angles across
+/// an edge.
 Matrix stiffness_of_shape(const RestSurface& rest) {
   const Mesh& mesh = rest.mesh;
   std::vector<Eigen::Triplet<double>> entries;
   for (int t = 0; t < mesh.triangle_count(); ++t) {
     const std::array<int, 3>& corner = mesh.triangles()[t];
-    // With the metric's inverse at rest, edges a and b from the first corner: grad of a node's hat function is constant.
+    // With the metric's inverse at rest, edges a and b from the first corner: grad of a node's hat function is
+    // constant.
     const double g11 = rest.inverse_11[t], g12 = rest.inverse_12[t], g22 = rest.inverse_22[t];
     const double with_first[3] = {g11 + 2 * g12 + g22, -(g11 + g12), -(g12 + g22)};
     const double product[3][3] = {
@@ -33,7 +35,8 @@ Matrix stiffness_of_shape(const RestSurface& rest) {
   return matrix;
 }
 
-/// Largest eigenvalue of A^-1 C: the square of the largest wave number that the mesh has, 6/l^2 of one of regular triangles.
+/// Largest eigenvalue of A^-1 C: the square of the largest wave number that the mesh has, 6/l^2 of one of regular
+/// triangles.
 double largest_square_of_wave_number(const Matrix& shape, const Eigen::VectorXd& area) {
   constexpr int iterations = 100;
   Eigen::VectorXd mode(area.size());
@@ -47,17 +50,17 @@ double largest_square_of_wave_number(const Matrix& shape, const Eigen::VectorXd&
   return value;
 }
 
-// The mean needs no more steps than the shortest waves that the lattice feels (KernelResponse); a fine mesh alone would give it
-// very many, over which a cell that comes to rest swings. Of those of bending twice that: with less, meshes of spacings below 1
-// failed at tau 0.6 with ten times the explicit limit.
+// The mean needs no more steps than the shortest waves that the lattice feels (KernelResponse); a fine mesh alone would
+// give it very many, over which a cell that comes to rest swings. Of those of bending twice that: with less, meshes of
+// spacings below 1 failed at tau 0.6 with ten times the explicit limit.
 constexpr double bending_felt = 2;
 
-// Of the largest eigenvalue of a bending stiffness: one that is smaller is left to the explicit step, which bears forty times
-// as much, and the filter takes a third of the time.
+// Of the largest eigenvalue of a bending stiffness: one that is smaller is left to the explicit step, which bears forty
+// times as much, and the filter takes a third of the time.
 constexpr double least_bending = 0.25;
 
-/// By how much the stretching and the bending stiffness pull, at most, at waves that the lattice feels; `square`: of the largest
-/// wave number of the mesh.
+/// By how much the stretching and the bending stiffness pull, at most, at waves that the lattice feels; `square`: of
+/// the largest wave number of the mesh.
 struct Pulls {
   double stretching, bending;
   Pulls(const KernelResponse& response, double stretching_stiffness, double bending_stiffness,
@@ -68,14 +71,14 @@ struct Pulls {
   }
 };
 
-// So close is a polynomial to the inverse, as a share of its least value: the filter stays positive, and its largest eigenvalue
-// times that of K is right to 1 %.
+// So close is a polynomial to the inverse, as a share of its least value: the filter stays positive, and its largest
+// eigenvalue times that of K is right to 1 %.
 constexpr double polynomial_error = 0.005;
 // Of L in a column: they take the time of one degree.
 constexpr int entries_per_degree = 3;
 
-/// Chebyshev's series of 1/(1 + a s + b s^2) for s from 0 to `largest`, as far as it takes for that; its value at 0 is 1. Empty if it
-/// takes more than `most`. Trefethen, Approximation Theory and Approximation Practice (2013), chapter 3.
+/// Chebyshev's series of 1/(1 + a s + b s^2) for s from 0 to `largest`, as far as it takes for that; its value at 0 is
+/// 1. Empty if it takes more than `most`. Trefethen, Approximation Theory and Approximation Practice (2013), chapter 3.
 std::vector<double> inverse_series(double a, double b, double largest, int most) {
   const auto inverse = [=](double x) {
     const double s = largest * (1 + x) / 2;

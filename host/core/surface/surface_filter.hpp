@@ -12,20 +12,24 @@
 
 namespace rouleau::core {
 
-/// Largest eigenvalue of (K A^-1)/2 that a lattice feels on a mesh so fine that it has all such waves; parameters as below.
+/// Largest eigenvalue of (K A^-1)/2 that a lattice feels on a mesh so fine that it has all such waves; parameters as
+/// below.
 double largest_eigenvalue(const KernelResponse& response, double stretching, double bending);
 
-/// What SemiImplicitFilter does for outlines, with the stiffness of a surface: C is the mesh's Laplacian at rest times -1 (weights
-/// of cotangents; Pinkall and Polthier, Experimental Mathematics 2, 15, 1993), A the areas of the nodes, and
+/// What SemiImplicitFilter does for outlines, with the stiffness of a surface: C is the mesh's Laplacian at rest times
+/// -1 (weights of cotangents; Pinkall and Polthier, Experimental Mathematics 2, 15, 1993), A the areas of the nodes,
+/// and
 ///
 ///     F = H + (I + K A^-1/2)^-1 (F(X + V) - H),   K = k_s C + k_b C A^-1 C.
 ///
-/// All three components have the same stiffness, the largest there is along the surface and across it, so that the filter
-/// does not know how the cell is turned. Where that is quicker, a polynomial in C A^-1 stands for the inverse, which differs by less
-/// than 1 % of its least eigenvalue. The sum of the forces stays what it is, for C has no sum; their torque need not.
+/// All three components have the same stiffness, the largest there is along the surface and across it, so that the
+/// filter does not know how the cell is turned. Where that is quicker, a polynomial in C A^-1 stands for the inverse,
+/// which differs by less than 1 % of its least eigenvalue. The sum of the forces stays what it is, for C has no sum;
+/// their torque need not.
 class SurfaceFilter {
  public:
-  /// `stretching`: k_s = d tension / d stretch along one direction, the other held; `bending`: k_b = d moment / d curvature;
+  /// `stretching`: k_s = d tension / d stretch along one direction, the other held; `bending`: k_b = d moment / d
+  /// curvature;
   /// `viscosity`: kinematic, of the fluid around the cell. Lattice units.
   SurfaceFilter(const RestSurface& rest, double viscosity, double stretching, double bending,
                 const KernelResponse& response = {});
@@ -35,7 +39,8 @@ class SurfaceFilter {
 
   /// Largest eigenvalue of (K A^-1)/2, waves left aside that are shorter than the lattice feels.
   [[nodiscard]] double largest_eigenvalue() const { return largest_; }
-  /// Of the polynomial that stands for the inverse, one more; 0: the inverse itself is taken, which is quicker for stiff membranes.
+  /// Of the polynomial that stands for the inverse, one more; 0: the inverse itself is taken, which is quicker for
+  /// stiff membranes.
   [[nodiscard]] int terms() const { return static_cast<int>(series_.size()); }
 
  private:

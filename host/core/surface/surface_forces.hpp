@@ -16,18 +16,18 @@
 
 namespace rouleau::core {
 
-/// Turns stresses, moments, pressures and surface tensions into nodal forces whose sum and torque vanish. Only what some
-/// law of a type needs is computed. What a node gets is summed in the order of its triangles: bits do not depend on the
-/// workers.
+/// Turns stresses, moments, pressures and surface tensions into nodal forces whose sum and torque vanish. Only what
+/// some law of a type needs is computed. What a node gets is summed in the order of its triangles: bits do not depend
+/// on the workers.
 class SurfaceForces {
  public:
-  /// `laws`: of each cell type, as they are in three dimensions. Throws std::invalid_argument for a law that remembers or
-  /// gives a viscosity, which surfaces do not have yet.
+  /// `laws`: of each cell type, as they are in three dimensions. Throws std::invalid_argument for a law that remembers
+  /// or gives a viscosity, which surfaces do not have yet.
   SurfaceForces(const Surfaces& surfaces, const std::vector<MembraneLaws>& laws);
 
-  /// From now on the forces are those of the semi-implicit step (SurfaceFilter), with the laws' own stiffness. What it holds is
-  /// in surfaces.state. `viscosity`: kinematic, of the suspending fluid; lattice units. `tension_unit`: SI size of the
-  /// lattice unit of tension, for what is kept from one stage to the next. `responses`: of each cell type.
+  /// From now on the forces are those of the semi-implicit step (SurfaceFilter), with the laws' own stiffness. What it
+  /// holds is in surfaces.state. `viscosity`: kinematic, of the suspending fluid; lattice units. `tension_unit`: SI
+  /// size of the lattice unit of tension, for what is kept from one stage to the next. `responses`: of each cell type.
   void take_semi_implicit_steps(Surfaces& surfaces, double viscosity, double tension_unit,
                                 const std::vector<KernelResponse>& responses);
 
@@ -40,8 +40,8 @@ class SurfaceForces {
 
   /// Sum of both principal curvatures at each node of a cell, over the area at rest.
   [[nodiscard]] std::vector<double> curvatures(const Surfaces& surfaces, int cell);
-  /// Mean tension of each triangle of a cell, all laws of triangles and cells together: half of the sum of both principal
-  /// tensions, force per present length.
+  /// Mean tension of each triangle of a cell, all laws of triangles and cells together: half of the sum of both
+  /// principal tensions, force per present length.
   [[nodiscard]] std::vector<double> tensions(const Surfaces& surfaces, int cell);
 
  private:

@@ -70,10 +70,10 @@ struct MeasureEdges {
 };
 
 /// Forces on the corners of triangles, minus the gradient of the energy.
-/// With the metric g of the sides e1, e2 and its inverse B at rest, d I1 = B : dg and d I2 = det B d det g; of the surface
-/// d area = d det g / (4 sqrt det g), of the volume the normal over 6 at each corner. Of an edge, energy changes with
-/// m d(l theta), m the mean of the moments at its ends: theta turns with the distance of the opposite corners from it, and
-/// either triangle takes half of what dl brings.
+/// With the metric g of the sides e1, e2 and its inverse B at rest, d I1 = B : dg and d I2 = det B d det g; of the
+/// surface d area = d det g / (4 sqrt det g), of the volume the normal over 6 at each corner. Of an edge, energy
+/// changes with m d(l theta), m the mean of the moments at its ends: theta turns with the distance of the opposite
+/// corners from it, and either triangle takes half of what dl brings.
 struct ActOnTriangles {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const SurfaceArrays* arrays) {

@@ -19,8 +19,8 @@ class SurfaceNormals {
   /// Pass over cells: at the present positions.
   void measure(Worker worker, const Surfaces& surfaces, Whose whose = Whose::own);
 
-  /// Of all nodes: the normals of the triangles around, each twice its area long, added up. That is six times the gradient of
-  /// the cell's volume.
+  /// Of all nodes: the normals of the triangles around, each twice its area long, added up. That is six times the
+  /// gradient of the cell's volume.
   [[nodiscard]] std::array<const double*, 3> sums() const { return {sum_[0].data(), sum_[1].data(), sum_[2].data()}; }
   /// Of all nodes: a third of the triangles around.
   [[nodiscard]] const double* node_areas() const { return node_area_.data(); }

@@ -37,8 +37,8 @@ RestSurface make_rest_surface(Mesh mesh, std::vector<double> x, std::vector<doub
   rest.rest_volume = enclosed_volume(rest.mesh, nodes);
   if (!(rest.rest_volume > 0))
     throw std::invalid_argument(
-        "the triangles of the surface run clockwise seen from outside\nturn them over: swap two corners of each (meshing "
-        "programs: invert the orientation of the faces)");
+        "the triangles of the surface run clockwise seen from outside\nturn them over: swap two corners of each "
+        "(meshing programs: invert the orientation of the faces)");
   return rest;
 }
 

@@ -26,8 +26,8 @@ namespace {
 namespace memory {
 constexpr double of_process = 30e6;   ///< the program, its libraries and MPI
 constexpr double of_each_cell = 600;  ///< of the scene: as it was read, where it begins, what lists of it are empty
-/// On the first rank, which writes: what is measured of each cell, and what becomes of those that are remembered, which are
-/// ten thousand at most (observe::most_cells_remembered).
+/// On the first rank, which writes: what is measured of each cell, and what becomes of those that are remembered, which
+/// are ten thousand at most (observe::most_cells_remembered).
 constexpr double of_writer(double cells) { return 10e6 + 1200 * cells + 1300 * std::min(cells, 1e4); }
 /// Of a rank's own nodes and those of its ghosts, of which surfaces keep no lists. `cells`: as many have these nodes.
 constexpr double of_known(int dimension, double own, double ghosts, double cells) {
@@ -39,7 +39,8 @@ constexpr double of_known(int dimension, double own, double ghosts, double cells
 template <int D>
 using SetOf = std::conditional_t<D == 2, core::D2Q9, core::D3Q19>;
 
-/// The ranks whose blocks lie within the reach of stencils of a rank's own, itself included, across periodic borders too.
+/// The ranks whose blocks lie within the reach of stencils of a rank's own, itself included, across periodic borders
+/// too.
 template <int D>
 std::vector<int> ranks_near(const core::Decomposition<D>& blocks, int rank) {
   const core::Domain<D> domain = blocks.domain(rank);
@@ -60,8 +61,8 @@ double volume(const core::Box<D>& box) {
   return product;
 }
 
-/// Calls function(nodes, out, other) with the nodes that core::for_halo_nodes goes through, in boxes, each with the rank that
-/// owns them, one of those near.
+/// Calls function(nodes, out, other) with the nodes that core::for_halo_nodes goes through, in boxes, each with the
+/// rank that owns them, one of those near.
 template <int D, class Function>
 void for_halo_boxes(const core::Decomposition<D>& blocks, int rank, const std::vector<int>& near, int below, int above,
                     Function function) {
@@ -95,7 +96,8 @@ void for_halo_boxes(const core::Decomposition<D>& blocks, int rank, const std::v
   }
 }
 
-/// Populations that cross the border to nodes of the halo that lie on one side of a block: as core/fluid/fluid.cpp has them.
+/// Populations that cross the border to nodes of the halo that lie on one side of a block: as core/fluid/fluid.cpp has
+/// them.
 template <int D>
 double crossing(const core::Box<D>& block, const core::Box<D>& nodes, const std::array<int, D>& out) {
   double count = 0;
@@ -205,7 +207,8 @@ void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vect
     ranks[rank].received_bytes += bytes;
     ranks[rank].ghost_nodes += nodes[c];
   }
-  // A message to each in each round, and the ranks wait once for each round: for positions, forces and velocities, reactions.
+  // A message to each in each round, and the ranks wait once for each round: for positions, forces and velocities,
+  // reactions.
   Pairs tell = spread;
   tell.insert(tell.end(), act.begin(), act.end());
   make_unique(tell);

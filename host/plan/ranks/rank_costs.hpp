@@ -19,8 +19,8 @@ struct CostOfSharing {
 };
 inline constexpr CostOfSharing cost_of_sharing[2] = {{5e-9, 25e-9, 10e-9, 40e-9}, {2e-9, 65e-9, 23e-9, 40e-9}};
 
-/// Of one rank, with the cells where they begin. Messages and bytes are those that the rank sends in a step, the mean of
-/// two steps; bytes of reactions between cells of different ranks, a small part, are left out.
+/// Of one rank, with the cells where they begin. Messages and bytes are those that the rank sends in a step, the mean
+/// of two steps; bytes of reactions between cells of different ranks, a small part, are left out.
 struct RankCost {
   long nodes = 0;  ///< of its block
   long cells = 0;  ///< that it owns

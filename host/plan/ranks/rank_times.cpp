@@ -31,14 +31,15 @@ class Part {
     squares_ += time * time;
     ++ranks_;
   }
-  /// On processors that have each as many ranks as the others, or one less, but which of them nobody knows: what is to be
-  /// expected of the one that takes longest. 0: each rank has its own.
+  /// On processors that have each as many ranks as the others, or one less, but which of them nobody knows: what is to
+  /// be expected of the one that takes longest. 0: each rank has its own.
   [[nodiscard]] double time(int processors) const {
     if (processors == 0 || processors >= ranks_) return longest_;
     const double mean = sum_ / ranks_, variance = std::max(0.0, squares_ / ranks_ - mean * mean),
                  drawn = std::ceil(static_cast<double>(ranks_) / processors),  // without putting one back
         deviation = std::sqrt(drawn * variance * (ranks_ - drawn) / std::max(1, ranks_ - 1));
-    // The largest of n normal variables is about sqrt(ln n) deviations above their mean; of two that add up to the same, 0.8.
+    // The largest of n normal variables is about sqrt(ln n) deviations above their mean; of two that add up to the
+    // same, 0.8.
     return std::max(longest_, drawn * mean + std::sqrt(std::log(processors)) * deviation);
   }
 

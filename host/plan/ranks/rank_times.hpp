@@ -46,13 +46,13 @@ struct Machines {
 };
 
 /// A step takes the longest computing and the longest messages of any rank, and computing twice: no rank goes on to the
-/// lattice before the membranes around it have sent their forces. Ranks that share processors take as long as those of the
-/// fullest processor, whichever they are: a rank that waits lets others run, and has looked for its message before. `scale`:
-/// what a step by one rank takes, over plan::step_cost; ghosts cost more where own membranes do.
+/// lattice before the membranes around it have sent their forces. Ranks that share processors take as long as those of
+/// the fullest processor, whichever they are: a rank that waits lets others run, and has looked for its message before.
+/// `scale`: what a step by one rank takes, over plan::step_cost; ghosts cost more where own membranes do.
 double step_time(const std::vector<RankCost>& ranks, const Machines& machines, double scale);
 
-/// By the ranks asked for, whose costs are known, and by powers of two (of eight with very many cells) until more do not
-/// help, have no room, are a waste, or are more than any machine has (2^17).
+/// By the ranks asked for, whose costs are known, and by powers of two (of eight with very many cells) until more do
+/// not help, have no room, are a waste, or are more than any machine has (2^17).
 RankTimes rank_times(const Plan& plan, const std::vector<RankCost>& asked, const Machines& machines);
 
 /// For people.

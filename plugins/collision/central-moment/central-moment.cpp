@@ -1,8 +1,9 @@
 // Central moments: n = f - f_eq + S/2 relaxes in the frame that moves with the fluid; f' = f_eq + S/2 + what is left of
 // n. f_eq and S have the moments of a Maxwellian and of its shift by the force. Geier, Greiner and Korvink (Phys. Rev.
 // E 73:066705, 2006); Premnath and Banerjee (Phys. Rev. E 80:036702, 2009); De Rosis (Phys. Rev. E 95:023311, 2017).
-// Without inertia the change of frame, second order in u, is left out: a scheme of raw moments x^a y^b remains. D3Q19 has
-// the moments of the planes xy, xz and yz, each with those of D2Q9, and no others; a change of frame keeps them apart.
+// Without inertia the change of frame, second order in u, is left out: a scheme of raw moments x^a y^b remains. D3Q19
+// has the moments of the planes xy, xz and yz, each with those of D2Q9, and no others; a change of frame keeps them
+// apart.
 #include <rouleau/collision.hpp>
 
 struct CentralMoment {

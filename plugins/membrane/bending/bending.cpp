@@ -1,8 +1,8 @@
 // Bending resistance: energy Eb/2 (kappa - kappa0)^2 per rest length, moment Eb (kappa - kappa0). The rest curvature
 // kappa0 is that of the cell's initial shape, zero or a given value; any constant gives the same forces, for the sum of
 // kappa over a closed outline is 2 pi whatever its shape. Zhang, Johnson and Popel (J. Biomech. 41, 2008), eq. 3.
-// In three dimensions kappa is the sum of both principal curvatures and the energy per rest area: Helfrich (Z. Naturforsch.
-// 28c, 1973) with the spontaneous curvature kappa0, which matters there.
+// In three dimensions kappa is the sum of both principal curvatures and the energy per rest area: Helfrich (Z.
+// Naturforsch. 28c, 1973) with the spontaneous curvature kappa0, which matters there.
 #include <rouleau/membrane.hpp>
 
 struct Bending {

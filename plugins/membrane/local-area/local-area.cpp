@@ -1,4 +1,5 @@
-// Resists local changes of a surface's area: energy K/2 (j - 1)^2 per rest area, j the area around a node over that at rest.
+// Resists local changes of a surface's area: energy K/2 (j - 1)^2 per rest area, j the area around a node over that at
+// rest.
 #include <rouleau/membrane.hpp>
 
 struct LocalArea {

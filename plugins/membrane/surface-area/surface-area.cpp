@@ -1,5 +1,6 @@
 // Keeps the area of a cell's surface: energy K/2 (A - A0)^2 / A0, tension K (A - A0)/A0 all over it, A0 a share of the
-// area at rest. Single triangles may still grow at the cost of others. A constant tension is added to it: that of a drop.
+// area at rest. Single triangles may still grow at the cost of others. A constant tension is added to it: that of a
+// drop.
 #include <rouleau/membrane.hpp>
 
 struct SurfaceArea {

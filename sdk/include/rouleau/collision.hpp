@@ -121,9 +121,9 @@ struct Node {
 
  private:
   /// 3 w_q as S holds it, and rate times that. The momentum that all q take up is rate u, exactly: in single precision
-  /// the velocities of one length have 2/3 of it, rounded, and those of the other what is left. With 1/3 and 1/12 rounded
-  /// on their own a fluid gains 3e-8 to 6e-8 of its momentum in each step, and the stress on the walls of a channel that
-  /// is 128 nodes high sinks by 3e-4 to 5e-4.
+  /// the velocities of one length have 2/3 of it, rounded, and those of the other what is left. With 1/3 and 1/12
+  /// rounded on their own a fluid gains 3e-8 to 6e-8 of its momentum in each step, and the stress on the walls of a
+  /// channel that is 128 nodes high sinks by 3e-4 to 5e-4.
   static constexpr bool exact = sizeof(typename S::Number) == 4;
   static constexpr int major = dimension == 2 ? 1 : 5;  ///< a velocity that has more of it: along an axis, between two
   static constexpr double majors = dimension == 2 ? 2 : 8,
@@ -199,8 +199,8 @@ ROULEAU_ALWAYS_INLINE std::size_t unknown(std::size_t number) {
 /// What a sweep does besides colliding: each is compiled, so that a node pays only for what its block has.
 enum class Force { none, acts, acts_and_velocity };
 
-/// The whole packs of a block. A function of its own for each: in one large function there are too few registers for the
-/// loop that runs.
+/// The whole packs of a block. A function of its own for each: in one large function there are too few registers for
+/// the loop that runs.
 template <class Set, class Model, class T, Force force, bool Varying, bool Inertia>
 struct CollisionSweep {
   template <int register_bytes>
@@ -242,7 +242,8 @@ struct CollisionSweep {
       if constexpr (velocity) {
 #pragma GCC unroll 3
         for (int k = 0; k < dimension; ++k) node.velocity[k].store(to[k] + (has_velocity ? x : 0));
-        // Here and not among the populations, which leaves more registers to the rest, of which three dimensions have few.
+        // Here and not among the populations, which leaves more registers to the rest, of which three dimensions have
+        // few.
         if constexpr (dimension == 3) asm volatile("" ::: "memory");  // NOLINT(hicpp-no-assembler)
       }
       S after[velocity_count];
@@ -305,9 +306,9 @@ struct CollisionLoopOn {
     }
   }
 
-  /// Three dimensions have four sweeps and not six, since a compiler needs long for each: those with one viscosity, and one
-  /// with a relaxation rate for each node, where what a block lacks is read from, and written to, a pack of the sweep's own.
-  /// The baseline has the last one only.
+  /// Three dimensions have four sweeps and not six, since a compiler needs long for each: those with one viscosity, and
+  /// one with a relaxation rate for each node, where what a block lacks is read from, and written to, a pack of the
+  /// sweep's own. The baseline has the last one only.
   template <int register_bytes, bool Inertia>
   ROULEAU_ALWAYS_INLINE static void choose_of_three(const CollisionInstance<Model>& instance, const Block& block) {
     if constexpr (register_bytes != static_cast<int>(InstructionSet::baseline)) {
@@ -338,8 +339,8 @@ struct CollisionLoopOn {
     }
   }
 
-  /// Whether what leaves a node lies where its opposite came from, as where a lattice streams in place: then half as many
-  /// pointers are read.
+  /// Whether what leaves a node lies where its opposite came from, as where a lattice streams in place: then half as
+  /// many pointers are read.
   ROULEAU_ALWAYS_INLINE static bool in_place(const Block& block) {
     std::uintptr_t apart = 0;
     Set::for_each_velocity([&](auto q) {
@@ -349,8 +350,8 @@ struct CollisionLoopOn {
     return apart == 0;
   }
 
-  /// Nodes from the first one on, pack by pack, by way of copies that lie in place. The last pack is padded: all nodes run
-  /// through the same code, so that a node's bits do not depend on its place.
+  /// Nodes from the first one on, pack by pack, by way of copies that lie in place. The last pack is padded: all nodes
+  /// run through the same code, so that a node's bits do not depend on its place.
   template <int register_bytes>
   __attribute__((noinline)) static void collide_padded(const CollisionInstance<Model>& instance, const Block& block,
                                                        std::uint32_t first) {
@@ -404,9 +405,9 @@ struct CollisionLoop {
 /// Model made of a type with a constructor from Parameters and
 /// `template <class Node, class S, class Rates> void operator()(const Node& before, const Rates& rates, S
 /// (&after)[Node::velocity_count]) const`: then it works on D2Q9 and D3Q19, with `S (&after)[9]` on D2Q9 alone; the
-/// manifest's "lattices" has to say so. The rates are what the member `template <class S> Rates<S> rates(const S& relaxation_rate) const` makes of
-/// 1/tau of the shear stress, or 1/tau itself if there is no such member: once for a block where the viscosity is the
-/// same everywhere.
+/// manifest's "lattices" has to say so. The rates are what the member `template <class S> Rates<S> rates(const S&
+/// relaxation_rate) const` makes of 1/tau of the shear stress, or 1/tau itself if there is no such member: once for a
+/// block where the viscosity is the same everywhere.
 template <class Model>
 rouleau_model collision(const char* id, const char* version) {
   static const rouleau_collision table = {

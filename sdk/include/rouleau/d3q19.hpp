@@ -9,8 +9,8 @@ namespace rouleau::d3q19 {
 inline constexpr int velocity_count = 19;
 inline constexpr double sound_speed_squared = 1.0 / 3.0;
 
-/// Components of each velocity: those of D2Q9; +z and -z; the diagonals across y, then those across x, counter-clockwise
-/// from (1, 0, 1) and (0, 1, 1).
+/// Components of each velocity: those of D2Q9; +z and -z; the diagonals across y, then those across x,
+/// counter-clockwise from (1, 0, 1) and (0, 1, 1).
 inline constexpr int velocity[19][3] = {{0, 0, 0},  {1, 0, 0},  {0, 1, 0},   {-1, 0, 0},  {0, -1, 0},
                                         {1, 1, 0},  {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0},  {0, 0, 1},
                                         {0, 0, -1}, {1, 0, 1},  {-1, 0, 1},  {-1, 0, -1}, {1, 0, -1},

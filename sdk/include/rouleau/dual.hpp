@@ -25,8 +25,8 @@
 namespace rouleau {
 
 /// A value and its derivatives by the model's argument. S is a pack, or a plain number.
-/// Where a function has no derivative (sqrt at 0, a fractional power at 0), the derivative is infinite or NaN; abs, min,
-/// max and select have the derivative of the side that is taken.
+/// Where a function has no derivative (sqrt at 0, a fractional power at 0), the derivative is infinite or NaN; abs,
+/// min, max and select have the derivative of the side that is taken.
 template <class S>
 struct Dual {
   S value;

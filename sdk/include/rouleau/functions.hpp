@@ -233,7 +233,8 @@ ROULEAU_ALWAYS_INLINE S pow_of(const S& x, const S& y) {
   return select((x <= x) & (y <= y), power, x + y);
 }
 
-/// x = n pi/2 + (high + low), |x| <= 1e6: n has 20 bits at most, and each product of it with a part of 33 bits is exact.
+/// x = n pi/2 + (high + low), |x| <= 1e6: n has 20 bits at most, and each product of it with a part of 33 bits is
+/// exact.
 template <class S>
 struct Turned {
   S quarter;  ///< n modulo 4: 0, 1, 2 or 3

@@ -138,7 +138,8 @@ struct MembraneLoop {
     return block.count - first < S::size ? block.count - first : S::size;
   }
 
-  /// Whether the model has a functor, or an energy, of an element that only one dimension has. Vertices have no dimension.
+  /// Whether the model has a functor, or an energy, of an element that only one dimension has. Vertices have no
+  /// dimension.
   template <class S>
   static constexpr bool in_3d() {
     using D = Dual<S>;
@@ -299,8 +300,8 @@ struct MembraneLoop {
 
 /// Model made of a type with a constructor from Parameters and a template operator() over the element it describes, or
 /// `template <class S> S energy(const Segment<S>&) const` (or of another element) in its place, from which forces and
-/// stiffness are derived (dual.hpp); laws that remember: see state.hpp. A law of segments may have a second functor, of a
-/// Triangle, and one of a Cell a second one of a Body: those are what it does in three dimensions.
+/// stiffness are derived (dual.hpp); laws that remember: see state.hpp. A law of segments may have a second functor, of
+/// a Triangle, and one of a Cell a second one of a Body: those are what it does in three dimensions.
 template <class Model>
 rouleau_model membrane(const char* id, const char* version) {
   static const rouleau_membrane table = {

@@ -1,6 +1,6 @@
-// A membrane that stiffens, in both dimensions: w = G/(2 a) (exp(a q) - 1) with q = I1 - 1 + 1/(I2 + 1), so that near rest
-// it is neo-Hookean. In three dimensions per rest area of a triangle, I1 = l1^2 + l2^2 - 2 and I2 = l1^2 l2^2 - 1, l1 and
-// l2 the stretches. In two, per rest length of a segment, of a sheet that keeps its width: l2 = 1.
+// A membrane that stiffens, in both dimensions: w = G/(2 a) (exp(a q) - 1) with q = I1 - 1 + 1/(I2 + 1), so that near
+// rest it is neo-Hookean. In three dimensions per rest area of a triangle, I1 = l1^2 + l2^2 - 2 and I2 = l1^2 l2^2 - 1,
+// l1 and l2 the stretches. In two, per rest length of a segment, of a sheet that keeps its width: l2 = 1.
 #include <rouleau/membrane.hpp>
 
 struct ModelType {

@@ -1,4 +1,5 @@
-// Nothing is wrong with this law: what the faulty ones are compared with. In three dimensions w = E/4 (I1 - ln(I2 + 1)).
+// Nothing is wrong with this law: what the faulty ones are compared with. In three dimensions w = E/4 (I1 - ln(I2 +
+// 1)).
 #include <math.h>
 
 #include "spring.h"

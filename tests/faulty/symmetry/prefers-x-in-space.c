@@ -1,5 +1,5 @@
-// Fault: in three dimensions one of three moments of third order is relaxed at another rate than its images; in two it is
-// honest.
+// Fault: in three dimensions one of three moments of third order is relaxed at another rate than its images; in two it
+// is honest.
 #include "operator.h"
 
 /* c_x (c_y^2 - c_z^2): no part of mass, momentum and stress, and zero in equilibrium. */

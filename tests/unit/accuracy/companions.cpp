@@ -49,7 +49,8 @@ TEST_CASE("companions have the scene's shape on a coarser lattice, segments with
 }
 
 TEST_CASE(
-    "with slip correction the fluid of the companion of another density gives way as before, for moments on the finer lattice") {
+    "with slip correction the fluid of the companion of another density gives way as before, for moments on the finer "
+    "lattice") {
   const auto corrected = [](const std::string& tau, bool moments) {
     return choose_companions(plan::read_scene(std::string(ROULEAU_PHYSICS_SCENES) + "/capsule.json",
                                               {"/numerics/slip_correction=true", "/numerics/tau=" + tau}),
@@ -73,7 +74,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "in three dimensions thin cells with the sharp kernel have companions of seven spacings a radius, others coarser ones") {
+    "in three dimensions thin cells with the sharp kernel have companions of seven spacings a radius, others coarser "
+    "ones") {
   const auto chosen = [](const std::string& nodes, const std::vector<std::string>& changes) {
     std::vector<std::string> overrides{"/domain/nodes=[" + nodes + "," + nodes + "," + nodes + "]"};
     overrides.insert(overrides.end(), changes.begin(), changes.end());
@@ -110,11 +112,13 @@ TEST_CASE("companions whose fluid must not give way take shorter steps") {
   CHECK(plain.runs[0].scene["numerics"]["tau"] == 2.5);
   const double tau = stiff.runs[0].scene["numerics"]["tau"];
   CHECK(stiff.runs[1].scene["numerics"]["tau"] == tau);
-  // 2.7 (tau - 1/2) times the shear rate in a step; viscosity (tau - 1/2)/3 is the fluid's over the density, spacings and steps.
+  // 2.7 (tau - 1/2) times the shear rate in a step; viscosity (tau - 1/2)/3 is the fluid's over the density, spacings
+  // and steps.
   const double rows = stiff.runs[1].scene["domain"]["nodes"][1], spacing = 25.6e-6 / rows;
   const double step = (tau - 0.5) / 3 * spacing * spacing * 5000 * 1e3 / 1.2e-3;
   CHECK(2.7 * (tau - 0.5) * 20 * step == Approx(0.01));
-  // The lattice's error of round cells does not depend on tau; that of biconcave ones grows by a fifth for each unit above 1.
+  // The lattice's error of round cells does not depend on tau; that of biconcave ones grows by a fifth for each unit
+  // above 1.
   const double nodes = stiff.runs[0].scene["domain"]["nodes"][1];
   CHECK(stiff.refinement == Approx(128 / nodes));
 }
@@ -165,8 +169,8 @@ TEST_CASE("a start from rest has a companion of its own where it takes a good pa
 }
 
 TEST_CASE("the density factors of all stages change together, and a true density is not changed") {
-  const Companions companions = of_capsule(
-      {R"(/stages=[{"name":"rest","duration":"1 s","density_factor":100},{"name":"shear","shear_rate":20,"strain":9}])"});
+  const Companions companions = of_capsule({R"(/stages=[{"name":"rest","duration":"1 s","density_factor":100},)"
+                                            R"({"name":"shear","shear_rate":20,"strain":9}])"});
   const nlohmann::json& scene = companions.runs.back().scene;
   CHECK(scene["stages"][0]["density_factor"] == 100 * companions.density);
   CHECK(scene["numerics"]["density_factor"] == 1562.5 * companions.density);

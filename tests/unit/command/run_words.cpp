@@ -41,13 +41,12 @@ TEST_CASE("a run says how it ended, what it cost, when the largest rouleau forme
   summary["rheology"] = {
       {{"stage", "rest"}, {"means", {{"relative_viscosity", nullptr}}}},
       {{"stage", "shear"}, {"means", {{"relative_viscosity", {{"mean", 1.17471}, {"deviation", 0.0309}}}}}}};
-  CHECK(
-      closing(summary) ==
-      std::vector<std::string>{
-          "completed after 1000 steps in 15 s (1 thread, 1322 MLUPS): 7.75 s simulated, strain 15",
-          "rouleau of 4 at 2.1 s; broke at strain 8.75; all single from strain 13",
-          "relative viscosity 1.17, without an error bar (--error-bar); its outputs have a standard deviation of 0.031 over "
-          "the second half of shear; largest area drift 0.1 %"});
+  CHECK(closing(summary) ==
+        std::vector<std::string>{
+            "completed after 1000 steps in 15 s (1 thread, 1322 MLUPS): 7.75 s simulated, strain 15",
+            "rouleau of 4 at 2.1 s; broke at strain 8.75; all single from strain 13",
+            "relative viscosity 1.17, without an error bar (--error-bar); its outputs have a standard deviation of "
+            "0.031 over the second half of shear; largest area drift 0.1 %"});
   summary["rheology"][1]["means"]["relative_viscosity"]["deviation"] = nullptr;  // of a single output
   CHECK(closing(summary).back() == "largest area drift 0.1 %");
   // The error bar of the viscosity has a line of its own.
@@ -81,9 +80,9 @@ TEST_CASE("two cells that part and meet through an image have not stayed togethe
   const Groups pair{{0, 1}}, single{{0}, {1}};
   Json met = event(11, 3, pair);
   met["met_images"] = Groups{{0, 1}};
-  CHECK(
-      aggregation({event(0, 0, pair), event(9, 2, single), met}) ==
-      "rouleau of 2 from the start; broke at strain 9; whole again from strain 11 by an image of itself: the box is too short");
+  CHECK(aggregation({event(0, 0, pair), event(9, 2, single), met}) ==
+        "rouleau of 2 from the start; broke at strain 9; whole again from strain 11 by an image of itself: the box is "
+        "too short");
   CHECK(aggregation({event(0, 0, pair), met}) ==
         "rouleau of 2 from the start; parted before strain 11, where it met an image of itself: the box is too short");
 }

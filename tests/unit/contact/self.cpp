@@ -28,7 +28,8 @@ Membranes polygon(std::vector<double> x, std::vector<double> y) {
   return m;
 }
 
-/// Two faces a distance apart with `length` segments each, one spacing long, closed by half circles of segments as long.
+/// Two faces a distance apart with `length` segments each, one spacing long, closed by half circles of segments as
+/// long.
 Membranes flat_cell(int length, double apart) {
   std::vector<double> x, y;
   const int steps = static_cast<int>(std::lround(std::numbers::pi * apart / 2));

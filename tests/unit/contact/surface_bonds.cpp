@@ -1,5 +1,5 @@
-// Interactions that remember and that want velocities, in three dimensions: bonds form, break, stay with their nodes, and
-// balance, between cells, images and walls.
+// Interactions that remember and that want velocities, in three dimensions: bonds form, break, stay with their nodes,
+// and balance, between cells, images and walls.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>

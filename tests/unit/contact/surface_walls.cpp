@@ -1,4 +1,5 @@
-// Walls that act on surfaces in three dimensions: the energy of a sphere in closed form, forces against its differences.
+// Walls that act on surfaces in three dimensions: the energy of a sphere in closed form, forces against its
+// differences.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>

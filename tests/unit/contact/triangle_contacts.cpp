@@ -1,5 +1,5 @@
-// Contacts of surfaces in three dimensions: closest points against all triangles, forces against differences of the energy,
-// balances, and the energy of parallel plates.
+// Contacts of surfaces in three dimensions: closest points against all triangles, forces against differences of the
+// energy, balances, and the energy of parallel plates.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -39,8 +39,8 @@ Surfaces pair(std::mt19937& random, double apart = 1.2) {
   return s;
 }
 
-/// Over all triangles of another cell's image, one by one, but those with a corner so far away that all of the triangle is
-/// farther than the cutoff: no edge here is 2 long.
+/// Over all triangles of another cell's image, one by one, but those with a corner so far away that all of the triangle
+/// is farther than the cutoff: no edge here is 2 long.
 double distance_to(const Surfaces& s, const Vec<3>& place, int other, const std::array<int, 3>& shift, double cutoff) {
   Vec<3> moved = place;
   for (int k = 0; k < 3; ++k) moved[k] -= shift[k] * box[k];

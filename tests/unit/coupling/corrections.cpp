@@ -13,8 +13,8 @@ using namespace rouleau::test;
 
 namespace {
 
-/// A distance drawn from a kernel: uniform place of a node, any of the kernel's lattice nodes; and what it counts, for weights
-/// may be negative.
+/// A distance drawn from a kernel: uniform place of a node, any of the kernel's lattice nodes; and what it counts, for
+/// weights may be negative.
 struct Drawn {
   double distance, weight;
 };

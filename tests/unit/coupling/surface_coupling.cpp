@@ -42,7 +42,8 @@ void for_nodes(const Function& function) {
   }
 }
 
-/// Fills the halo as the fluid does: images of periodic axes, and beyond walls that rest the mirrored velocity reversed.
+/// Fills the halo as the fluid does: images of periodic axes, and beyond walls that rest the mirrored velocity
+/// reversed.
 template <class T>
 void fill_halo(VectorField<T, 3>& u, const Domain<3>& domain) {
   constexpr int halo = Field<T, 3>::halo;

@@ -67,8 +67,8 @@ TEST_CASE("blocks that were measured to be slow become smaller") {
 }
 
 TEST_CASE("cuts go where the border costs least") {
-  // Numbers beside each other in memory cost little: along rows, unless the lattice is three times as wide as it is high, or
-  // ten times where blocks are larger than a cache.
+  // Numbers beside each other in memory cost little: along rows, unless the lattice is three times as wide as it is
+  // high, or ten times where blocks are larger than a cache.
   CHECK(Decomposition<2>::bisected(Domain<2>({320, 128}, {true, false}), 2).domain(0).block.size(1) == 64);
   CHECK(Decomposition<2>::bisected(Domain<2>({512, 128}, {true, false}), 2).domain(0).block.size(0) == 256);
   CHECK(Decomposition<2>::bisected(Domain<2>({4096, 512}, {true, false}), 2).domain(0).block.size(1) == 256);

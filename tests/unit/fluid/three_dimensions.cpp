@@ -1,4 +1,5 @@
-// D3Q19 in place: against plain two-array streaming, between walls and across periodic borders; in blocks; its observers.
+// D3Q19 in place: against plain two-array streaming, between walls and across periodic borders; in blocks; its
+// observers.
 #include <array>
 #include <catch2/catch.hpp>
 #include <random>
@@ -230,8 +231,8 @@ TEMPLATE_TEST_CASE("a lattice of three dimensions cut into blocks has the same b
       for (int q = 0; q < 19 && !(setting.solid && setting.solid->at(at)); ++q)
         different += block->population(q, x, {y, z}) != whole->population(q, at[0], {at[1], at[2]}) ? 1 : 0;
       if (!whole->mask().active(at[0], at[1] + whole_domain.size[1] * at[2])) return;
-      // What a stencil with this base node reads: each node of the halo is an image of one in the whole lattice, or lies
-      // beyond a wall there, too.
+      // What a stencil with this base node reads: each node of the halo is an image of one in the whole lattice, or
+      // lies beyond a wall there, too.
       for (int j = 0; j < 64; ++j) {
         const Nodes step{j % 4 - 1, j / 4 % 4 - 1, j / 16 - 1};
         Nodes to;

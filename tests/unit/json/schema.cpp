@@ -45,7 +45,8 @@ TEST_CASE("all faults are told at once, in the order of the text") {
 
 TEST_CASE("what follows from a fault is not told") {
   const auto schema = Json::parse(R"({"type": "object", "additionalProperties": false, "required": ["density", "size"],
-      "properties": {"density": {"type": "number"}, "size": {"type": "array", "minItems": 2, "items": {"type": "number"}},
+      "properties": {"density": {"type": "number"},
+                     "size": {"type": "array", "minItems": 2, "items": {"type": "number"}},
                      "shape": {"oneOf": [{"type": "object", "required": ["r"], "additionalProperties": false,
                                           "properties": {"r": {"type": "number"}, "s": {}}},
                                          {"type": "object", "required": ["q"], "additionalProperties": false,
@@ -96,8 +97,8 @@ TEST_CASE("messages name what was found and what is allowed") {
 }
 
 TEST_CASE("keys made for authors by a pattern are allowed") {
-  const auto schema = Json::parse(
-      R"({"type": "object", "additionalProperties": false, "patternProperties": {"^x-": {}}, "properties": {"a": {}}})");
+  const auto schema = Json::parse(R"({"type": "object", "additionalProperties": false, )"
+                                  R"("patternProperties": {"^x-": {}}, "properties": {"a": {}}})");
   CHECK(message_of(R"({"x-mine": [1], "a": 2})", schema).empty());
   CHECK_THAT(message_of(R"({"y-mine": [1]})", schema), Contains("unknown key \"y-mine\""));
 }
@@ -124,8 +125,8 @@ TEST_CASE("a fault in a value that set made names the option") {
 }
 
 TEST_CASE("a hostile text meets the pattern of a schema without harm") {
-  const auto schema = Json::parse(
-      R"({"properties": {"a": {"type": "string", "pattern": "^[a-z][a-z0-9]*(-[a-z0-9]+)*(\\.[a-z0-9]+(-[a-z0-9]+)*)*$"}}})");
+  const auto schema = Json::parse(R"({"properties": {"a": {"type": "string", )"
+                                  R"("pattern": "^[a-z][a-z0-9]*(-[a-z0-9]+)*(\\.[a-z0-9]+(-[a-z0-9]+)*)*$"}}})");
   CHECK(message_of("{\"a\": \"" + std::string(1000, 'a') + "\"}", schema).empty());
   CHECK_THAT(message_of("{\"a\": \"" + std::string(8192, 'a') + "\"}", schema), Contains("is too long for a"));
   CHECK_FALSE(message_of("{\"a\": \"" + std::string(900, 'a') + "!\"}", schema).empty());

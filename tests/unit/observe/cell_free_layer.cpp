@@ -92,7 +92,8 @@ TEST_CASE("layers of surfaces change places when they are mirrored, and the near
 }
 
 TEST_CASE("in a tube a sphere on the axis leaves the radius less its meridian, a long way round") {
-  // r(x) = sqrt(a^2 - x^2) is pi a^2 / 2 over the length; 0.4 % as the spheres have corners and planes are a spacing apart.
+  // r(x) = sqrt(a^2 - x^2) is pi a^2 / 2 over the length; 0.4 % as the spheres have corners and planes are a spacing
+  // apart.
   const Domain<3> domain{{24, 32, 32}, {true, false, false}};
   const double taken = std::numbers::pi * 81 / 2 / 24;
   const CellFreeLayer layer = cell_free_layer_in_tube(spheres(9, {{11.3, 15.5, 15.5}}), domain, 16);
@@ -104,7 +105,8 @@ TEST_CASE("in a tube a sphere on the axis leaves the radius less its meridian, a
   CHECK(below.upper == 16);
   CHECK(above.lower == 16);
   CHECK(above.upper == Approx(below.lower).epsilon(1e-3));
-  // In the plane x the ray at an angle b from the sphere's own, of 51 on this side, ends at 8 cos b + sqrt(3.9^2 - x^2 - 64 sin^2 b).
+  // In the plane x the ray at an angle b from the sphere's own, of 51 on this side, ends at 8 cos b + sqrt(3.9^2 - x^2
+  // - 64 sin^2 b).
   double reached = 0;
   for (int x = -3; x <= 3; ++x) {
     for (int ray = -25; ray <= 25; ++ray) {

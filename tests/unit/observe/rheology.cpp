@@ -102,7 +102,8 @@ TEST_CASE("means in time do not depend on where outputs fall, nor on one that is
   CHECK(mean_of({0, 1, 2}, 1.5)["mean"] == 1.0);
   CHECK(mean_of({0, 1, 2}, 1.5)["deviation"].is_null());
   CHECK(mean_of({0, 1, 2}, 5).is_null());
-  // Parts from 1 to 2 have the means 1.875, 1.625, 1.375 and 1.125, wherever outputs fall; fewer of these have no error.
+  // Parts from 1 to 2 have the means 1.875, 1.625, 1.375 and 1.125, wherever outputs fall; fewer of these have no
+  // error.
   const double error = std::sqrt(0.3125 / 3 / 4);
   CHECK(mean_of({0, 0.9, 1.1, 1.2, 1.3, 2}, 0)["error"].get<double>() == Approx(error).epsilon(1e-12));
   CHECK(mean_of({0, 1, 1.25, 1.5, 1.75, 2}, 0)["error"].get<double>() == Approx(error).epsilon(1e-12));

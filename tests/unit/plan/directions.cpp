@@ -29,7 +29,8 @@ struct Planned {
       "fluid": {"density": "1 g/cm3", "viscosity": "1.2 cP", "body_force": ["6e6 N/m3", "0 N/m3", "0 N/m3"]},
       "numerics": {"density_factor": 100},
       "cell_types": {"capsule": {"shape": {"sphere": {"radius": "3 um"}}, "triangles": 320,
-        "interior_viscosity": "3.6 cP", "membrane": [{"model": "neo-hookean", "parameters": {"shear_modulus": "3e-6 N/m"}}]}},
+        "interior_viscosity": "3.6 cP",
+        "membrane": [{"model": "neo-hookean", "parameters": {"shear_modulus": "3e-6 N/m"}}]}},
       "cells": [{"type": "capsule", "at": ["8 um", "4.5 um", "8 um"]}],
       "stages": [{"name": "flow", "duration": "30 ms"}]})");
     return (folder.path() / "scene.json").string();

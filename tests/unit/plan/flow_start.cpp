@@ -16,7 +16,8 @@ using rouleau::plugin::Catalog;
 
 namespace {
 
-/// Finite differences for du/dt = u'' [+ 1], height 1: what FlowStart::rate_at is a series of, at each of these instants.
+/// Finite differences for du/dt = u'' [+ 1], height 1: what FlowStart::rate_at is a series of, at each of these
+/// instants.
 std::vector<double> start_by_differences(bool driven, const std::vector<double>& instants) {
   constexpr int n = 80;
   const double h = 1.0 / n, dt = 0.4 * h * h;

@@ -54,7 +54,8 @@ TEST_CASE("a smaller target error costs more, and the error that is expected is 
 }
 
 TEST_CASE(
-    "a smaller target is not cheaper, whichever stage has a density factor of its own, and its lattice is not coarser") {
+    "a smaller target is not cheaper, whichever stage has a density factor of its own, and its lattice is not "
+    "coarser") {
   const std::string demo = "/../../../scenes/four-cells-shear.json", at_rest = "/stages/0/start=impulsive";
   struct Case {
     std::string scene;
@@ -115,7 +116,8 @@ TEST_CASE("each stage gets the density factor that its own error leaves room for
   const auto factor = [](const Scene& of, std::size_t stage) { return of.stages[stage].density_factor; };
   CHECK(choice->expected.total() <= 0.02);
   CHECK(choice->doubt.empty());
-  // The Reynolds number of the fast stage and of the slow one is nearly the same; a start at rest takes from that of the late one.
+  // The Reynolds number of the fast stage and of the slow one is nearly the same; a start at rest takes from that of
+  // the late one.
   CHECK(factor(scene, 2) == Approx(10 * factor(scene, 1)).epsilon(0.1));
   CHECK(factor(scene, 3) < factor(scene, 2) / 1.25);
   CHECK(factor(scene, 0) > factor(scene, 2));
@@ -153,7 +155,8 @@ TEST_CASE("cells that drift or meet have no steady state, and the fluid's densit
 }
 
 TEST_CASE("a limit of one stage does not bound another's density factor") {
-  // Cells that attract each other strongly bound the factor at rest; a slow flow is bound by its error or by the same limit.
+  // Cells that attract each other strongly bound the factor at rest; a slow flow is bound by its error or by the same
+  // limit.
   const std::string stages = R"(/stages=[{"name": "fast", "shear_rate": "40 1/s", "strain": 10, "start": "developed"},
       {"name": "slow", "shear_rate": "0.01 1/s", "strain": 1, "start": "developed"}])";
   const std::vector<std::string> stiff{stages, "/cell_types/capsule/membrane/0/parameters/shear_modulus=1.92e-4",
@@ -318,7 +321,8 @@ TEST_CASE(
       {"/cell_types/capsule/interior_viscosity=\"6 cP\""},
       {shape + R"({"biconcave": {"radius": "3.91 um"}})"},
       {shape + R"({"ellipsoid": {"semi_axes": ["4 um", "3 um", "2.5 um"]}})", domain_of(wide, walls), inside},
-      {R"(/interactions=[{"between": ["capsule", "capsule"], "model": "morse", "parameters": {"depth": "1e-8 J/m2"}}])"},
+      {R"(/interactions=[{"between": ["capsule", "capsule"], "model": "morse", )"
+       R"("parameters": {"depth": "1e-8 J/m2"}}])"},
       in_tube};
   for (const auto& changes : cases) {
     for (const char* of : {"steady", "motion"}) {
@@ -380,7 +384,8 @@ TEST_CASE("without cells a lattice of three dimensions resolves what lies betwee
     return read.scene.domain.nodes;
   };
   CHECK(of("\"y\": " + wall + ", \"z\": " + wall, 0.01) == std::vector<int>{4, 32, 32});
-  // A tube's radius has eight spacings at least, more where its flow rate asks for them (0.65 over the square of the radius).
+  // A tube's radius has eight spacings at least, more where its flow rate asks for them (0.65 over the square of the
+  // radius).
   const std::string round = R"("walls": {"tube": {"radius": "10 um"}})";
   CHECK(of(round, 0.05)[1] >= 16);
   CHECK(of(round, 0.005)[1] >= 2 * std::sqrt(0.65 / 0.005));
@@ -409,7 +414,8 @@ TEST_CASE("limits of the plan bound the choice in three dimensions, where stiff 
 }
 
 TEST_CASE(
-    "one thin cell that is placed along the flow leaves that position the later, the denser the fluid, and gets a lighter one") {
+    "one thin cell that is placed along the flow leaves that position the later, the denser the fluid, and gets a "
+    "lighter one") {
   const auto inertia = [](const std::string& angle) {
     const ReadScene read =
         chosen({"/cells/0/angle=\"" + angle + "\"", R"(/numerics={"auto": {"error": 0.03}})"}, "/auto-biconcave.json");
@@ -422,7 +428,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a tenth of the target is the most by which forces that are held may delay what cells do, and steps are not shorter") {
+    "a tenth of the target is the most by which forces that are held may delay what cells do, and steps are not "
+    "shorter") {
   const std::string stiff = R"(/cell_types/capsule/membrane/0={"model": "skalak", "parameters": )"
                             R"({"shear_modulus": "5e-6 N/m", "area_dilation": 200}})";
   for (const double target : {0.05, 0.02, 0.01}) {

@@ -49,7 +49,8 @@ TEST_CASE("a plan says by how much a start from rest makes a stage late") {
     const Plan plan = make_plan(scene, plugins_of_reports());
     return make_report(plan).late_starts;
   };
-  // Mean lag of a Couette flow that starts from rest, H^2/(24 nu) at this rate, of a fluid that is so many times denser.
+  // Mean lag of a Couette flow that starts from rest, H^2/(24 nu) at this rate, of a fluid that is so many times
+  // denser.
   const auto found = late({});
   REQUIRE(found.size() == 1);
   CHECK(found[0].stage == "shear");

@@ -47,7 +47,8 @@ TEST_CASE("cells at random stand in the order of their entries, by hand placed o
 
 TEST_CASE("cells at random count where cells or membrane nodes are too many") {
   const auto cells = [](const std::string& count) {
-    return R"(/cells=[{"type": "rbc", "at": ["5 um", "6 um"]}, {"type": "rbc", "random": {"gap": "1 nm", "seed": 1, "count": )" +
+    return R"(/cells=[{"type": "rbc", "at": ["5 um", "6 um"]}, )"
+           R"({"type": "rbc", "random": {"gap": "1 nm", "seed": 1, "count": )" +
            count + "}}]";
   };
   CHECK_THROWS_WITH(

@@ -150,7 +150,8 @@ TEST_CASE("the sharp kernel bears less stiffness, and with the semi-implicit ste
     const double gain = limit("sharp6", tau, "semi-implicit") / explicit_limit;
     CHECK(gain == Approx(std::string(tau) == "0.8" ? 1 : 20));
   }
-  // As much with the slip correction, but not where the cell is more viscous and tau is large (docs/stability.md, "With sharp6").
+  // As much with the slip correction, but not where the cell is more viscous and tau is large (docs/stability.md, "With
+  // sharp6").
   const std::string corrected = "/numerics/slip_correction=true",
                     alike = "/cell_types/rbc/interior_viscosity=\"1.2 cP\"";
   const auto gain = [&](const std::string& kernel, const std::string& tau, const std::vector<std::string>& changes) {
@@ -177,7 +178,8 @@ TEST_CASE("plan knows how far membranes turn while a semi-implicit step holds th
     return std::nullopt;
   };
   CHECK_FALSE(held({"/numerics/coupling=explicit"}));
-  // A time step of spacing^2/6 over the viscosity of a fluid 600 times as dense as water; lattice units of stiffness follow.
+  // A time step of spacing^2/6 over the viscosity of a fluid 600 times as dense as water; lattice units of stiffness
+  // follow.
   const double spacing = 20e-6 / 60, density = 600 * 1000, step = spacing * spacing / 6 / (1.2e-3 / density);
   const double unit = density * spacing * spacing * spacing / (step * step);
   // The stiffness is the largest at stretches from 0.95 to 1.1 along one direction, T = G (s - 1/s^3): G (1 + 3/s^4).
@@ -207,7 +209,8 @@ TEST_CASE("plan knows over what length the slip of stiff membranes is smoothed, 
     }
     return std::nullopt;
   };
-  // Radius 8.75 spacings, segments of 1: solver runs took 4, 20 and 80 passes for 1, 5 and 20 times a red cell's stiffness.
+  // Radius 8.75 spacings, segments of 1: solver runs took 4, 20 and 80 passes for 1, 5 and 20 times a red cell's
+  // stiffness.
   constexpr double pass = 1.0 / 2 / (8.75 * 8.75);
   CHECK(smoothing(1, {}).value() == Approx(4 * pass).epsilon(0.05));
   CHECK(smoothing(5, {}).value() == Approx(20 * pass).epsilon(0.05));
@@ -303,7 +306,8 @@ TEST_CASE("a fluid alone is judged by its own start") {
 }
 
 TEST_CASE("plan knows how thin the fluid inside cells may be on the lattice where slip is corrected") {
-  // limits/viscosity-ratio-3d.json: at tau 1 and ratio 0.033 sheared cells came apart, which plan did not say; at tau 2 they do not.
+  // limits/viscosity-ratio-3d.json: at tau 1 and ratio 0.033 sheared cells came apart, which plan did not say; at tau 2
+  // they do not.
   const Catalog catalog({ROULEAU_PLUGINS});
   const auto margin = [&](const std::vector<std::string>& changes) -> std::optional<double> {
     for (const Limit& limit :

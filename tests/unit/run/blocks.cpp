@@ -1,4 +1,5 @@
-// The same run directory from any number of ranks: whole runs cut into blocks, and checkpoints that other cuts go on from.
+// The same run directory from any number of ranks: whole runs cut into blocks, and checkpoints that other cuts go on
+// from.
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>

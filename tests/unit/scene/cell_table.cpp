@@ -81,18 +81,18 @@ TEST_CASE("a table is the same in the dialects of spreadsheets and programs") {
   const std::string utf8 = "type,x_um,y_um,angle_deg\nrbc,8,6,90\nrbc,20.5,8.25,0\ncapsule,30,20,0\n";
   std::string little = "\xFF\xFE", big = "\xFE\xFF";
   for (const char c : utf8) little += {c, '\0'}, big += {'\0', c};
-  for (
-      const std::string& text :
-      {"\"type\",\"x_um\",\"y_um\",\"angle_deg\"\n\"rbc\",8,6,90\n\"rbc\",20.5,8.25,0\n\"capsule\" ,\"30\",20,0\n"s,
-       "type;x_um;y_um;angle_deg\r\n" + rows, "sep=;\r\ntype;x_um;y_um;angle_deg\r\n" + rows + ";;;\r\n",
-       "type\tx_um\ty_um\tangle_deg\nrbc\t8\t6\t90\nrbc\t20,5\t8,25\t0\ncapsule\t30\t20\t0\n"s,
-       "type,\tx_um,\ty_um,\tangle_deg\nrbc,\t8,\t6,\t90\nrbc,\t20.5,\t8.25,\t0\ncapsule,\t30,\t20,\t0\n"s,
-       "# positions, measured\n# at 20 C\ntype,x_um,y_um,angle_deg\nrbc,8,6,90\n # \n   \nrbc,20.5,8.25,0\ncapsule,30,20,0"s,
-       "Type,X_um,Y_um,ANGLE_deg\nrbc,+8.000e+00,6.,90\nrbc,2.05e1,8.25,0\ncapsule,30,20,0\n"s,
-       "type,x_um,y_um,angle_deg\rrbc,8,6,90\rrbc,20.5,8.25,0\rcapsule,30,20,0\r"s,
-       "type,x_um,y_um,angle_deg,\nrbc,8,6,90,\nrbc,20.5,8.25,0,\ncapsule,30,20,0,\n"s,
-       "name;type;x_um;y_um;angle_deg\n\"a; \"\"b\"\"\";rbc;8;6;90\nc;rbc;20.5;8.25;0\n;capsule;30;20;0\n"s,
-       "\xEF\xBB\xBF\"type\",x_um,y_um,angle_deg\nrbc,8,6,90\nrbc,20.5,8.25,0\ncapsule,30,20,0\n"s, little, big}) {
+  for (const std::string& text :
+       {"\"type\",\"x_um\",\"y_um\",\"angle_deg\"\n\"rbc\",8,6,90\n\"rbc\",20.5,8.25,0\n\"capsule\" ,\"30\",20,0\n"s,
+        "type;x_um;y_um;angle_deg\r\n" + rows, "sep=;\r\ntype;x_um;y_um;angle_deg\r\n" + rows + ";;;\r\n",
+        "type\tx_um\ty_um\tangle_deg\nrbc\t8\t6\t90\nrbc\t20,5\t8,25\t0\ncapsule\t30\t20\t0\n"s,
+        "type,\tx_um,\ty_um,\tangle_deg\nrbc,\t8,\t6,\t90\nrbc,\t20.5,\t8.25,\t0\ncapsule,\t30,\t20,\t0\n"s,
+        "# positions, measured\n# at 20 C\ntype,x_um,y_um,angle_deg\nrbc,8,6,90\n # \n   \nrbc,20.5,8.25,0\n"
+        "capsule,30,20,0"s,
+        "Type,X_um,Y_um,ANGLE_deg\nrbc,+8.000e+00,6.,90\nrbc,2.05e1,8.25,0\ncapsule,30,20,0\n"s,
+        "type,x_um,y_um,angle_deg\rrbc,8,6,90\rrbc,20.5,8.25,0\rcapsule,30,20,0\r"s,
+        "type,x_um,y_um,angle_deg,\nrbc,8,6,90,\nrbc,20.5,8.25,0,\ncapsule,30,20,0,\n"s,
+        "name;type;x_um;y_um;angle_deg\n\"a; \"\"b\"\"\";rbc;8;6;90\nc;rbc;20.5;8.25;0\n;capsule;30;20;0\n"s,
+        "\xEF\xBB\xBF\"type\",x_um,y_um,angle_deg\nrbc,8,6,90\nrbc,20.5,8.25,0\ncapsule,30,20,0\n"s, little, big}) {
     CAPTURE(text);
     const auto cells = read(text);
     REQUIRE(cells.size() == plain.size());

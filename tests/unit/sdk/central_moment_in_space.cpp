@@ -33,7 +33,8 @@ Matrix moments_from(const Eigen::Vector3d& u) {
   return rows;
 }
 
-/// Hermite's equilibrium and Guo's source to second order in u, and the moments u^2 v and u^2 v^2 that a Maxwellian has.
+/// Hermite's equilibrium and Guo's source to second order in u, and the moments u^2 v and u^2 v^2 that a Maxwellian
+/// has.
 std::pair<Vector, Vector> equilibrium_and_source(double density, const Eigen::Vector3d& u, const Eigen::Vector3d& force,
                                                  bool inertia) {
   Vector equilibrium, source, higher = Vector::Zero(), higher_source = Vector::Zero();

@@ -91,8 +91,8 @@ TEST_CASE("a collision conserves mass and adds the force to the momentum") {
 }
 
 TEST_CASE("rounding to single precision does not make momentum grow or decay") {
-  // What is gained of the momentum in each step changes the stress on a channel's walls by rows^2 / (12 viscosity) of it: 8e-9
-  // by 7e-5 at 128 rows. With 1/3 and 1/12 each rounded on its own it is 2.5e-8 to 5e-8, and now at most 4e-9.
+  // What is gained of the momentum in each step changes the stress on a channel's walls by rows^2 / (12 viscosity) of
+  // it: 8e-9 by 7e-5 at 128 rows. With 1/3 and 1/12 each rounded on its own it is 2.5e-8 to 5e-8, and now at most 4e-9.
   const unsigned seed = new_seed();
   const float rate = GENERATE(0.6F, 8.0F / 9, 1.0F, 8.0F / 7, 1.6F);
   CAPTURE(seed, rate);

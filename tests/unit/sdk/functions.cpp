@@ -1,4 +1,5 @@
-// log, log1p, expm1, pow, sin, cos, tanh and erf of packs: accurate, the same bits for each instruction set, right at their edges.
+// log, log1p, expm1, pow, sin, cos, tanh and erf of packs: accurate, the same bits for each instruction set, right at
+// their edges.
 #include <rouleau/functions.hpp>
 
 #include <algorithm>

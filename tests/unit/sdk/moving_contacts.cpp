@@ -11,8 +11,8 @@ namespace {
 
 using namespace rouleau::test;
 
-/// Energy is the distance, force the approach, its derivative the sliding and a thousand times its speed: what went in comes
-/// out.
+/// Energy is the distance, force the approach, its derivative the sliding and a thousand times its speed: what went in
+/// comes out.
 struct Mirror {
   explicit Mirror(const rouleau::Parameters&) {}
   double cutoff() const { return 1; }

@@ -13,7 +13,8 @@
 
 namespace rouleau::test {
 
-/// Packings of a scene, placed as read_scene places them; Packed is derived from it, and makes the domain and the types.
+/// Packings of a scene, placed as read_scene places them; Packed is derived from it, and makes the domain and the
+/// types.
 template <class Packed>
 struct PackedScene {
   scene::Scene scene;

@@ -1,5 +1,5 @@
-// Cells packed at random in three dimensions: what must hold is found by brute force over all nodes, edges, triangles and
-// images.
+// Cells packed at random in three dimensions: what must hold is found by brute force over all nodes, edges, triangles
+// and images.
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -72,7 +72,8 @@ double between_segments(const Vec<3>& p, const Vec<3>& u, const Vec<3>& q, const
   return (w + s * u - t * v).norm();
 }
 
-/// Smallest distance of two surfaces, the second moved by `shift`: of nodes from triangles, and of edges. No more than `most`.
+/// Smallest distance of two surfaces, the second moved by `shift`: of nodes from triangles, and of edges. No more than
+/// `most`.
 double distance(const Placed& a, const Placed& b, const Vec<3>& shift, double most) {
   const auto reaches = [](const TriangleSurface& surface) {
     double longest = 0;
@@ -202,8 +203,8 @@ TEST_CASE("moves keep axes uniform in space", "[many-cells]") {
   packed.hematocrit(0, 0.25, 3, 0.2e-6);
   const double seconds = packed.seconds_of_run();
   REQUIRE_FALSE(packed.shortfall);
-  // Of n independent axes (a b' + b a')/2 - I/3 has components with variances of 4/45/n and 1/15/n; neighbours side by side
-  // make fewer of them, as in two dimensions.
+  // Of n independent axes (a b' + b a')/2 - I/3 has components with variances of 4/45/n and 1/15/n; neighbours side by
+  // side make fewer of them, as in two dimensions.
   Eigen::Matrix3d order = -Eigen::Matrix3d::Identity() / 3;
   const double n = static_cast<double>(packed.scene.cells.size());
   for (const CellPlacement& cell : packed.scene.cells) order += *cell.axis * cell.axis->transpose() / n;

@@ -254,8 +254,8 @@ void compare_cuts(const Case& c, const std::vector<Cut<Set::dimension>>& cuts, c
   }
 }
 
-/// `look`: every so many steps all ranks tell each other everything. `cuts`: none: all kinds; else cells travel over them,
-/// and change hands.
+/// `look`: every so many steps all ranks tell each other everything. `cuts`: none: all kinds; else cells travel over
+/// them, and change hands.
 template <class Set>
 void compare_cuts(const Case& c, long steps, long look = 1000, std::vector<Cut<Set::dimension>> cuts = {}) {
   const bool travel = !cuts.empty() && steps > look;

@@ -213,8 +213,8 @@ TEST_CASE("one sentence names the cheapest setting below the target and what it 
   REQUIRE(a.sentences.size() == 2);
   CHECK(
       a.sentences[0].text ==
-      "To keep the error of deformation below 1 %, take resolution 15, scheme corrected: it runs 5.6 s, with an error of "
-      "0.89 %. The default runs 16 s, 2.9 times longer, with an error of 2 %.");
+      "To keep the error of deformation below 1 %, take resolution 15, scheme corrected: it runs 5.6 s, with an error "
+      "of 0.89 %. The default runs 16 s, 2.9 times longer, with an error of 2 %.");
   CHECK(a.sentences[0].point == std::optional<std::size_t>(3));
   CHECK(a.sentences[0].target == 0.01);
   CHECK(a.sentences[1].text ==
@@ -229,8 +229,8 @@ TEST_CASE("one sentence names the cheapest setting below the target and what it 
   strict.default_setting = {0, 0};
   CHECK(
       analyse(strict, 0).sentences[0].text ==
-      "To keep the error of deformation below 50 %, take resolution 10, scheme plain: it runs 1 s, with an error of 4 %. "
-      "This is the default.");
+      "To keep the error of deformation below 50 %, take resolution 10, scheme plain: it runs 1 s, with an error of 4 "
+      "%. This is the default.");
 }
 
 TEST_CASE("the error of a quantity that is an error is called by its name", "[analysis]") {

@@ -51,7 +51,8 @@ Json scene_of_cells() {
     "fluid": {"density": "1 g/cm3", "viscosity": "1 cP"},
     "cell_types": {"rbc": {"shape": {"circle": {"radius": "2 um"}}, "segments": 32, "interior_viscosity": "1 cP",
                    "membrane": [{"model": "neo-hookean", "parameters": {"shear_modulus": "6e-6 N/m"}}]}},
-    "cells": [{"type": "rbc", "row": {"count": 4, "spacing": "6 um", "axis": "x", "angle": "0 deg", "center": ["20 um", "10 um"]}}],
+    "cells": [{"type": "rbc", "row": {"count": 4, "spacing": "6 um", "axis": "x", "angle": "0 deg",
+                                       "center": ["20 um", "10 um"]}}],
     "stages": [{"name": "rest", "duration": "2 s"}, {"name": "shear", "shear_rate": "20 1/s", "strain": 15}],
     "output": {"cells": {"strain": 0.25}}})");
 }
@@ -174,8 +175,8 @@ TEST_CASE("quantities of the suspension come from series.csv and summary.json", 
 
 namespace {
 
-/// Two spheres of 30 um3 in a box of 40 x 20 x 10 um or, with walls, a tube of 5 um radius: cell k is at 3 (k + 1) um/s t along x and
-/// t^2 um along z; their contact has 2 um2 and grows by 1 um2/s.
+/// Two spheres of 30 um3 in a box of 40 x 20 x 10 um or, with walls, a tube of 5 um radius: cell k is at 3 (k + 1) um/s
+/// t along x and t^2 um along z; their contact has 2 um2 and grows by 1 um2/s.
 WrittenRun spheres(bool tube) {
   Json scene = Json::parse(R"({
     "rouleau": 1, "domain": {"size": ["40 um", "20 um", "10 um"], "nodes": [64, 32, 16], "y": "periodic"},

@@ -203,7 +203,8 @@ TEST_CASE("the energy of a stretched sphere is that of its law") {
 }
 
 TEST_CASE(
-    "Hooke's surface of Poisson's ratio 1/2 is the neo-Hookean one at small strains, and a sphere of it that is blown up has its energy") {
+    "Hooke's surface of Poisson's ratio 1/2 is the neo-Hookean one at small strains, and a sphere of it that is blown "
+    "up has its energy") {
   auto random = generator(75);
   Surfaces s = one_cell(shape::unit_sphere(3));
   std::uniform_real_distribution<double> any(-1e-6, 1e-6);

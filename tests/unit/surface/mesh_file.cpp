@@ -146,17 +146,14 @@ TEST_CASE("a surface is the same from OBJ, OFF, PLY and STL, in text and in bina
     CHECK(shape::rest_surface(read).rest_volume == Approx(shape::rest_surface(sphere).rest_volume).epsilon(1e-6));
   }
   // Squares become triangles.
-  CHECK(
-      file.read(
-              "OFF\n8 6 12\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n"
-              "4 2 3 7 6\n4 3 0 4 7\n")
-          .triangles.size() == 12);
-  CHECK(
-      File(".obj")
-          .read(
-              "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\n"
-              "f 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n")
-          .triangles.size() == 12);
+  CHECK(file.read("OFF\n8 6 12\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n4 4 5 6 7\n"
+                  "4 0 1 5 4\n4 1 2 6 5\n"
+                  "4 2 3 7 6\n4 3 0 4 7\n")
+            .triangles.size() == 12);
+  CHECK(File(".obj")
+            .read("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 1 4 3 2\nf 5 6 7 8\n"
+                  "f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n")
+            .triangles.size() == 12);
 }
 
 TEST_CASE("a file that holds no closed surface is refused with its place and the reason") {

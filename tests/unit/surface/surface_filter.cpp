@@ -1,4 +1,5 @@
-// The semi-implicit step of surfaces: its filter against the matrix that it inverts, built here from the angles of the triangles.
+// The semi-implicit step of surfaces: its filter against the matrix that it inverts, built here from the angles of the
+// triangles.
 #include "core/surface/surface_filter.hpp"
 
 #include <Eigen/Dense>
@@ -126,7 +127,8 @@ TEST_CASE("what a membrane of a sphere resists is what the sphere's second harmo
 }
 
 TEST_CASE(
-    "semi-implicit forces of surfaces sum to zero, are the explicit ones where nothing is stiff, and look one step ahead") {
+    "semi-implicit forces of surfaces sum to zero, are the explicit ones where nothing is stiff, and look one step "
+    "ahead") {
   auto random = generator(212);
   std::uniform_real_distribution<double> any(-0.1, 0.1);
   Surfaces s = one_cell(shape::biconcave_disc(6, 3));

@@ -35,8 +35,8 @@ constexpr unsigned char untouched = 0xa5;  ///< what lies between a piece and it
 
 std::byte* page_of(std::byte* memory) { return memory - reinterpret_cast<std::uintptr_t>(memory) % page; }
 
-/// A piece for a model that ends, but for its alignment, where a page begins that cannot be accessed, with its size before
-/// it; null when the pool is used up or not asked.
+/// A piece for a model that ends, but for its alignment, where a page begins that cannot be accessed, with its size
+/// before it; null when the pool is used up or not asked.
 void* from_pool(std::size_t alignment, std::size_t size) {
   if (!counts.from_pool || rouleau::ForeignCall::current() == nullptr) return nullptr;
   if (alignment > page || size > page * page) return nullptr;

@@ -11,8 +11,8 @@ namespace rouleau::conform {
 struct ProcessCounts {
   std::atomic<std::int64_t> allocations{0}, releases{0};  ///< by malloc and its kin, and by new
 
-  /// While `from_pool` is set, a model's memory is taken from this pool, with a guard behind each piece, and never given
-  /// back to it: what is released cannot be accessed any more.
+  /// While `from_pool` is set, a model's memory is taken from this pool, with a guard behind each piece, and never
+  /// given back to it: what is released cannot be accessed any more.
   std::atomic<bool> from_pool{false};
   std::byte *pool = nullptr, *pool_end = nullptr;
   std::atomic<std::byte*> pool_next{nullptr};
