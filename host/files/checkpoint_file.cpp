@@ -15,7 +15,7 @@
 #include "base/input_file.hpp"
 #include "checksum.hpp"
 #include "file.hpp"
-#include "hdf5/hdf5_file.hpp"
+#include "hdf5/hdf5_rows.hpp"
 
 namespace rouleau::files {
 

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "file.hpp"
+#include "hdf5/hdf5_rows.hpp"
 #include "middle_sections.hpp"
 #include "units/lattice_units.hpp"
 

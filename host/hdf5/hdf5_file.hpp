@@ -1,44 +1,17 @@
-// HDF5's identifiers as values that close themselves, and its failures as the host's errors.
+// HDF5 files, and HDF5's failures as the host's errors.
 #pragma once
-
-#include <hdf5.h>
 
 #include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
+
+#include "handle.hpp"
 
 namespace rouleau::hdf5 {
 
-/// Owns one HDF5 identifier.
-class Handle {
- public:
-  using Close = herr_t (*)(hid_t);
-  Handle() = default;
-  Handle(hid_t id, Close closer) : id_(id), close_(closer) {}
-  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  Handle& operator=(Handle&& other) noexcept {
-    std::swap(id_, other.id_);
-    std::swap(close_, other.close_);
-    return *this;
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  ~Handle() { close(); }
-
-  [[nodiscard]] hid_t id() const { return id_; }
-  [[nodiscard]] bool valid() const { return id_ >= 0; }
-  /// False when closing failed (a file's last data could not be written).
-  bool close() noexcept { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
-
- private:
-  hid_t id_ = -1;
-  Close close_ = nullptr;
-};
-
-class Rows;
+class Rows;  // hdf5_rows.hpp
 
 /// Makes and reads what Rouleau's HDF5 files are made of. Every member throws Error(input_output) naming the file.
 /// Nothing is read from elsewhere: a link leads to a regular file in the same folder, as frames.h5 does to its
@@ -130,40 +103,6 @@ class File {
   std::unique_ptr<std::string> foreign_ = std::make_unique<std::string>();  ///< file that a link must not lead to
   Handle links_;                                                            ///< how links are followed
   Handle handle_;
-};
-
-/// A dataset that is being written, its first rows first. Belongs to its file, which must outlive it. Every member
-/// throws Error(input_output) naming the file.
-class Rows {
- public:
-  /// The next `count` rows. Of a compressed dataset rows are kept, a copy of them, until they fill a chunk: HDF5 would
-  /// compress one that is filled in two goes twice. With the last row the dataset is finished.
-  void append(const void* rows, std::size_t count);
-  [[nodiscard]] bool full() const { return written_ == all_; }
-
- private:
-  friend class File;
-  Rows(File& file, std::string path, std::vector<hsize_t> shape, bool layers, hid_t given, std::string unit)
-      : file_(&file),
-        path_(std::move(path)),
-        shape_(std::move(shape)),
-        layers_(layers),
-        given_(given),
-        unit_(std::move(unit)) {}
-  void put(const std::byte* rows, hsize_t count);
-  void finish();
-
-  File* file_;
-  std::string path_;
-  std::vector<hsize_t> shape_;
-  bool layers_;
-  hid_t given_;
-  std::string unit_;
-  Handle dataset_;
-  hsize_t all_ = 0, written_ = 0;   ///< rows
-  hsize_t together_ = 1;            ///< rows are written in multiples of this
-  std::size_t bytes_of_row_ = 0;    ///< as they are given
-  std::vector<std::byte> waiting_;  ///< rows that fill no chunk yet
 };
 
 }  // namespace rouleau::hdf5

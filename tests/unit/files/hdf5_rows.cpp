@@ -4,7 +4,7 @@
 #include <random>
 
 #include "files/file.hpp"
-#include "hdf5/hdf5_file.hpp"
+#include "hdf5/hdf5_rows.hpp"
 #include "scratch_folder.hpp"
 #include "unit/random.hpp"
 

@@ -2,7 +2,7 @@
 #include <sstream>
 
 #include "files/file.hpp"
-#include "hdf5/hdf5_file.hpp"
+#include "hdf5/hdf5_rows.hpp"
 #include "report/report.hpp"
 #include "report/report_data.hpp"
 #include "report/report_outlines.hpp"
