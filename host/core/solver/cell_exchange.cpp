@@ -1,85 +1,13 @@
 #include "cell_exchange.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
 #include <map>
-#include <stdexcept>
 #include <utility>
 
+#include "cell_messages.hpp"
+
 namespace rouleau::core {
-
-/// Values one after another, copied bit by bit.
-template <int D>
-class CellExchange<D>::Packer {
- public:
-  template <class V>
-  void operator()(const V* values, std::size_t count) {
-    const std::size_t at = message_.size();
-    message_.resize(at + count * sizeof(V));
-    if (count > 0) std::memcpy(message_.data() + at, static_cast<const void*>(values), count * sizeof(V));
-  }
-  [[nodiscard]] Message take() { return std::move(message_); }
-
- private:
-  Message message_;
-};
-
-template <int D>
-class CellExchange<D>::Unpacker {
- public:
-  explicit Unpacker(Message message) : message_(std::move(message)) {}
-  template <class V>
-  void operator()(V* values, std::size_t count) {
-    if (count * sizeof(V) > message_.size() - at_) throw std::logic_error("a message about cells ends too early");
-    if (count > 0) std::memcpy(static_cast<void*>(values), message_.data() + at_, count * sizeof(V));
-    at_ += count * sizeof(V);
-  }
-
- private:
-  Message message_;
-  std::size_t at_ = 0;
-};
-
-namespace {
-
-/// Values: an array of all nodes.
-template <class Values, class Transfer>
-void transfer_nodes(Values& values, const CellRange& cell, Transfer transfer) {
-  transfer(values.data() + cell.first, static_cast<std::size_t>(cell.count));
-}
-
-template <class Message>
-void transfer_reactions(TouchedCell& touched, Message& message) {
-  std::size_t count = touched.reactions.size();
-  message(&touched.cell, 1), message(&count, 1);
-  touched.reactions.resize(count);
-  message(touched.reactions.data(), count);
-}
-
-/// Gives each of `peers` what transfer(rank, cells, message) packs of the cells in one of its lists; those with an empty list
-/// are left out.
-template <class Packer, class Peer, class Transfer>
-void send_to_peers(const std::map<int, Peer>& peers, Transport& transport, std::vector<int> Peer::*given,
-                   Transfer transfer) {
-  for (const auto& [rank, peer] : peers) {
-    if ((peer.*given).empty()) continue;
-    Packer message;
-    transfer(transport.rank(), peer.*given, message);
-    transport.send(rank, message.take());
-  }
-}
-/// Takes from each what transfer(rank, cells, message) unpacks of those in one of its lists.
-template <class Unpacker, class Peer, class Transfer>
-void receive_from_peers(const std::map<int, Peer>& peers, Transport& transport, std::vector<int> Peer::*taken,
-                        Transfer transfer) {
-  for (const auto& [rank, peer] : peers) {
-    if ((peer.*taken).empty()) continue;
-    Unpacker message(transport.receive(rank));
-    transfer(rank, peer.*taken, message);
-  }
-}
-
-}  // namespace
 
 template <int D>
 CellExchange<D>::CellExchange(GhostCells<D> ghosts, bool velocities)
@@ -101,15 +29,6 @@ std::vector<BoundingBox<D>> CellExchange<D>::boxes_of_all(const Cells& cells) co
     all[c] = of_ranks[owner][next[owner]++];
   }
   return all;
-}
-
-template <int D>
-template <class Transfer>
-void CellExchange<D>::transfer_memory(Cells& cells, DisplacementWatch& watch, int cell, Transfer transfer) {
-  DisplacementWatch::Memory& memory = watch.memory();
-  for (auto& along : along_axes<D>(memory.position)) transfer_nodes(along, cells.cells[cell], transfer);
-  transfer(&memory.limit[cell], 1);
-  transfer(&memory.bound[cell], 1);
 }
 
 template <int D>
@@ -147,25 +66,25 @@ void CellExchange<D>::transfer_positions(Cells& cells, DisplacementWatch& viscos
       if (shown.velocities) transfer_nodes(along, cells.cells[c], std::ref(message));
     }
     message(&cells.largest_step[c], 1);
-    if (shown.memory) transfer_memory(cells, viscosity, c, std::ref(message));
+    if (shown.memory) transfer_memory<D>(cells, viscosity, c, std::ref(message));
   }
 }
 
 template <int D>
 void CellExchange<D>::send_shown(const GhostCells<D>& ghosts, Cells& cells, DisplacementWatch& viscosity, Shown shown) {
-  send_to_peers<Packer>(ghosts.peers(), *ghosts.ranks().transport, &GhostCells<D>::Peer::mine,
-                        [&](int, const std::vector<int>& of_peer, Packer& message) {
-                          transfer_positions(cells, viscosity, of_peer, shown, message);
-                        });
+  send_to_peers(ghosts.peers(), *ghosts.ranks().transport, &GhostCells<D>::Peer::mine,
+                [&](int, const std::vector<int>& of_peer, Packer& message) {
+                  transfer_positions(cells, viscosity, of_peer, shown, message);
+                });
 }
 
 template <int D>
 void CellExchange<D>::receive_shown(const GhostCells<D>& ghosts, Cells& cells, DisplacementWatch& viscosity,
                                     Shown shown) {
-  receive_from_peers<Unpacker>(ghosts.peers(), *ghosts.ranks().transport, &GhostCells<D>::Peer::theirs,
-                               [&](int, const std::vector<int>& of_peer, Unpacker& message) {
-                                 transfer_positions(cells, viscosity, of_peer, shown, message);
-                               });
+  receive_from_peers(ghosts.peers(), *ghosts.ranks().transport, &GhostCells<D>::Peer::theirs,
+                     [&](int, const std::vector<int>& of_peer, Unpacker& message) {
+                       transfer_positions(cells, viscosity, of_peer, shown, message);
+                     });
 }
 
 template <int D>
@@ -212,7 +131,7 @@ void CellExchange<D>::hand_over(Cells& cells, DisplacementWatch& viscosity,
   std::map<int, Packer> to;
   std::map<int, Unpacker> from;
   for (const auto& handover : handovers) {
-    if (handover.from == own) transfer_cell(cells, viscosity, handover.cell, std::ref(to[handover.to]));
+    if (handover.from == own) transfer_cell<D>(cells, viscosity, handover.cell, std::ref(to[handover.to]));
   }
   for (auto& [rank, message] : to) ranks_.transport->send(rank, message.take());
   for (const auto& handover : handovers) {
@@ -220,7 +139,7 @@ void CellExchange<D>::hand_over(Cells& cells, DisplacementWatch& viscosity,
     auto message = from.find(handover.from);
     if (message == from.end())
       message = from.emplace(handover.from, Unpacker(ranks_.transport->receive(handover.from))).first;
-    transfer_cell(cells, viscosity, handover.cell, std::ref(message->second));
+    transfer_cell<D>(cells, viscosity, handover.cell, std::ref(message->second));
     took_over_ = true;
   }
 }
@@ -280,16 +199,14 @@ void CellExchange<D>::transfer_forces(const Cells& cells, const std::array<doubl
 
 template <int D>
 void CellExchange<D>::send_forces(const Cells& cells, const std::array<double*, D>& force) const {
-  send_to_peers<Packer>(
-      ghosts_.peers(), *ranks_.transport, &GhostCells<D>::Peer::mine_there,
-      [&](int, const auto& of_peer, auto& message) { transfer_forces(cells, force, of_peer, message); });
+  send_to_peers(ghosts_.peers(), *ranks_.transport, &GhostCells<D>::Peer::mine_there,
+                [&](int, const auto& of_peer, auto& message) { transfer_forces(cells, force, of_peer, message); });
 }
 
 template <int D>
 void CellExchange<D>::receive_forces(const Cells& cells, const std::array<double*, D>& force) const {
-  receive_from_peers<Unpacker>(
-      ghosts_.peers(), *ranks_.transport, &GhostCells<D>::Peer::theirs_here,
-      [&](int, const auto& of_peer, auto& message) { transfer_forces(cells, force, of_peer, message); });
+  receive_from_peers(ghosts_.peers(), *ranks_.transport, &GhostCells<D>::Peer::theirs_here,
+                     [&](int, const auto& of_peer, auto& message) { transfer_forces(cells, force, of_peer, message); });
 }
 
 template <int D>
@@ -307,52 +224,18 @@ void CellExchange<D>::transfer_velocities(Cells& cells, const Base& base, int re
 
 template <int D>
 void CellExchange<D>::send_velocities(Cells& cells, const Base& base) const {
-  send_to_peers<Packer>(ghosts_.peers(), *ranks_.transport, &GhostCells<D>::Peer::theirs_here,
-                        [&](int reader, const auto& of_peer, auto& message) {
-                          transfer_velocities(cells, base, reader, of_peer, message);
-                        });
+  send_to_peers(ghosts_.peers(), *ranks_.transport, &GhostCells<D>::Peer::theirs_here,
+                [&](int reader, const auto& of_peer, auto& message) {
+                  transfer_velocities(cells, base, reader, of_peer, message);
+                });
 }
 
 template <int D>
 void CellExchange<D>::receive_velocities(Cells& cells, const Base& base) const {
-  receive_from_peers<Unpacker>(ghosts_.peers(), *ranks_.transport, &GhostCells<D>::Peer::mine_there,
-                               [&](int reader, const auto& of_peer, auto& message) {
-                                 transfer_velocities(cells, base, reader, of_peer, message);
-                               });
-}
-
-/// What laws and potentials remember, and what has leaked.
-template <int D>
-template <class Transfer>
-void CellExchange<D>::transfer_state(Cells& cells, int cell, Transfer transfer) {
-  const CellRange& range = cells.cells[cell];
-  for (auto& along : along_axes<D>(cells.force)) transfer_nodes(along, range, transfer);
-  if (!cells.area_leakage.empty()) transfer(&cells.area_leakage[cell], 1);
-  for (ElementState& state : cells.state) transfer_nodes(state.value, range, transfer);
-  for (ContactMemory* memory : {&cells.contacts, &cells.wall_contacts}) {
-    if (memory->of_cell.empty()) continue;
-    std::vector<ContactState>& contacts = memory->of_cell[cell];
-    std::size_t size = contacts.size();
-    transfer(&size, 1);
-    contacts.resize(size);
-    for (ContactState& contact : contacts) {
-      transfer(&contact.variable, 1);
-      transfer(&contact.other, 1);
-      transfer(&contact.shift, 1);
-      contact.value.resize(static_cast<std::size_t>(range.count));
-      transfer(contact.value.data(), contact.value.size());
-    }
-  }
-}
-
-template <int D>
-template <class Transfer>
-void CellExchange<D>::transfer_cell(Cells& cells, DisplacementWatch& watch, int cell, Transfer transfer) {
-  for (auto& along : along_axes<D>(cells.position)) transfer_nodes(along, cells.cells[cell], transfer);
-  for (auto& along : along_axes<D>(cells.velocity)) transfer_nodes(along, cells.cells[cell], transfer);
-  transfer(&cells.largest_step[cell], 1);
-  transfer_memory(cells, watch, cell, transfer);
-  transfer_state(cells, cell, transfer);
+  receive_from_peers(ghosts_.peers(), *ranks_.transport, &GhostCells<D>::Peer::mine_there,
+                     [&](int reader, const auto& of_peer, auto& message) {
+                       transfer_velocities(cells, base, reader, of_peer, message);
+                     });
 }
 
 template <int D>
@@ -377,8 +260,8 @@ void CellExchange<D>::show_places(Cells& cells, const std::map<int, Sight>& sigh
       message(&cells.largest_step[c], 1);
     }
   };
-  send_to_peers<Packer>(sights, *ranks_.transport, &Sight::mine, transfer);
-  receive_from_peers<Unpacker>(sights, *ranks_.transport, &Sight::theirs, transfer);
+  send_to_peers(sights, *ranks_.transport, &Sight::mine, transfer);
+  receive_from_peers(sights, *ranks_.transport, &Sight::theirs, transfer);
 }
 
 template class CellExchange<2>;

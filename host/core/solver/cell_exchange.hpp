@@ -37,8 +37,8 @@ class CellExchange {
     Base base;
     std::function<bool()> escaped;  ///< whether a node of own cells has left the domain
   };
-  /// Tasks of schedule.hpp that are messages about cells; nothing for others. Between the two halves of one lies no other
-  /// message.
+  /// Tasks of schedule.hpp that are messages about cells; nothing for others. Between the two halves of one lies no
+  /// other message.
   void run(Task task, const Parts& parts);
   /// Takes positions that are still on their way, before ranks speak of something else between two steps. Other workers
   /// may have begun with the next one.
@@ -58,17 +58,15 @@ class CellExchange {
   [[nodiscard]] const GhostCells<D>& ghosts() const { return ghosts_; }
   /// The boxes of all cells as they are now, on all ranks.
   [[nodiscard]] std::vector<BoundingBox<D>> boxes_of_all(const Cells& cells) const;
-  /// Hands the cells on to their next owners, and shows them, with the watch's memory, to those who have to know them then.
-  /// What this rank will not know any more may be forgotten. No step can be taken after it.
+  /// Hands the cells on to their next owners, and shows them, with the watch's memory, to those who have to know them
+  /// then. What this rank will not know any more may be forgotten. No step can be taken after it.
   void pass_on(Cells& cells, DisplacementWatch& watch, const GhostCells<D>& next);
 
  private:
-  class Packer;
-  class Unpacker;
-  /// After the nodes have moved: what owners have found of them, then positions and largest steps of ghosts. Says whether
-  /// lists of cells that act on each other are out of date, if there are such lists (null: none), and whether a node has
-  /// left the domain. New ghosts come with what the viscosity's watch remembers of them, and cells that change hands with
-  /// all that is known of them.
+  /// After the nodes have moved: what owners have found of them, then positions and largest steps of ghosts. Says
+  /// whether lists of cells that act on each other are out of date, if there are such lists (null: none), and whether a
+  /// node has left the domain. New ghosts come with what the viscosity's watch remembers of them, and cells that change
+  /// hands with all that is known of them.
   void send_positions(Cells& cells, DisplacementWatch& viscosity, DisplacementWatch* lists, bool escaped);
   /// What messages about positions are of.
   struct Shown {
@@ -95,13 +93,6 @@ class CellExchange {
   template <class Message>
   void transfer_velocities(Cells& cells, const Base& base, int reader, const std::vector<int>& of_peer,
                            Message& message) const;
-  template <class Transfer>
-  static void transfer_memory(Cells& cells, DisplacementWatch& watch, int cell, Transfer transfer);
-  template <class Transfer>
-  static void transfer_state(Cells& cells, int cell, Transfer transfer);
-  /// All that there is.
-  template <class Transfer>
-  static void transfer_cell(Cells& cells, DisplacementWatch& watch, int cell, Transfer transfer);
   void hand_over(Cells& cells, DisplacementWatch& viscosity,
                  const std::vector<typename GhostCells<D>::Handover>& handovers);
 
