@@ -1,0 +1,409 @@
+#include "columns.hpp"
+
+#include <iterator>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "rotation.hpp"
+
+namespace rouleau::observe {
+
+namespace {
+
+template <auto member>
+Value output(const Row& row) {
+  return row.output.*member;
+}
+template <auto member>
+Value energy(const Row& row) {
+  return row.output.energy.*member;
+}
+template <auto member>
+Value cell(const Row& row) {
+  return row.cell->*member;
+}
+template <auto member, std::size_t axis>
+Value cell(const Row& row) {
+  return (row.cell->*member)[axis];
+}
+/// Of an outline; empty of a surface.
+template <auto member>
+Value of_outline(const Row& row) {
+  const std::optional<double>& value = row.cell->*member;
+  return value ? Value(*value) : Value();
+}
+template <auto member>
+Value aggregate(const Row& row) {
+  return row.aggregate->*member;
+}
+template <auto member>
+Value contact(const Row& row) {
+  return row.contact != nullptr ? Value(row.contact->*member) : Value();
+}
+template <std::size_t axis>
+Value image(const Row& row) {
+  return row.contact != nullptr ? Value(row.contact->image[axis]) : Value();
+}
+
+Value rotation_of_aggregate(const Row& row) {
+  const auto found = row.output.rotation.find(row.aggregate->label);
+  return found != row.output.rotation.end() ? Value(found->second) : Value();
+}
+
+/// In every row of many contacts the file would grow with the square of the number of cells.
+Value members_of_aggregate(const Row& row) {
+  constexpr int few = 16;
+  const AggregateMembers& aggregate = *row.aggregate;
+  const bool first = row.contact == nullptr || row.contact == aggregate.contacts.front();
+  if (aggregate.count > few && !first) return std::string();
+  return aggregate.members;
+}
+
+/// What every table begins with.
+constexpr Observable instant_columns[] = {
+    {.name = "step", .unit = "", .doc = "number of the step, over all stages", .value = output<&Snapshot::step>},
+    {.name = "time",
+     .unit = "s",
+     .doc = "simulated time since the first stage began",
+     .value = output<&Snapshot::time>},
+    {.name = "strain", .unit = "", .doc = "summed over the stages", .value = output<&Snapshot::strain>},
+};
+
+constexpr Observable cell_columns[] = {
+    {.name = "cell",
+     .unit = "",
+     .doc = "number of the cell, from 0 in the scene's order",
+     .value = cell<&CellSnapshot::cell>},
+    {.name = "type", .unit = "", .doc = "its type", .value = cell<&CellSnapshot::type>},
+    {.name = "x",
+     .unit = "m",
+     .doc = "centroid of what the membrane encloses; not wrapped into the periodic box",
+     .value = cell<&CellSnapshot::x>},
+    {.name = "y", .unit = "m", .doc = "likewise", .value = cell<&CellSnapshot::y>},
+    {.name = "angle",
+     .unit = "rad",
+     .doc = "of the long axis of the inertia ellipse against x, counter-clockwise, followed over turns; `nan` "
+            "for a circle (deformation below 1e-6), which has none; in three dimensions of the longer of the two "
+            "axes of the inertia ellipsoid that lie nearest to the plane of x and y",
+     .value = cell<&CellSnapshot::angle>,
+     .chart = "Angle of the long axis"},
+    {.name = "deformation",
+     .unit = "",
+     .doc = "(L - B)/(L + B) with the axes L > B of the ellipse that has the enclosed area's second moments; in "
+            "three dimensions of the two axes of the ellipsoid that lie nearest to the plane of x and y",
+     .value = cell<&CellSnapshot::deformation>,
+     .chart = "Deformation (L − B)/(L + B)"},
+    {.name = "area",
+     .unit = "m2",
+     .doc = "that the outline encloses; empty in three dimensions",
+     .value = of_outline<&CellSnapshot::area>},
+    {.name = "perimeter",
+     .unit = "m",
+     .doc = "of the outline; empty in three dimensions",
+     .value = of_outline<&CellSnapshot::perimeter>},
+    {.name = "min_gap",
+     .unit = "m",
+     .doc = "to the nearest outline of another cell or of any periodic image; `inf` where there is none; in three "
+            "dimensions between nodes and triangles, up to half of the shortest period",
+     .value = cell<&CellSnapshot::min_gap>,
+     .chart = "Smallest gap to another cell"},
+    {.name = "wall_gap",
+     .unit = "m",
+     .doc = "smallest distance of the outline to a wall; `nan` without walls",
+     .value = cell<&CellSnapshot::wall_gap>,
+     .chart = "Smallest gap to a wall"},
+    {.name = "aggregate",
+     .unit = "",
+     .doc = "label of the cell's aggregate: the smallest number of its cells",
+     .value = cell<&CellSnapshot::aggregate>},
+    {.name = "tank_treading_angle",
+     .unit = "rad",
+     .doc = "of the outline's first node about the centroid, followed over turns; of a surface that of the node "
+            "that was farthest from its axis along z at the start",
+     .value = cell<&CellSnapshot::tank_treading_angle>},
+    {.name = "through_image",
+     .unit = "",
+     .doc = "1 where the aggregate is held together through the periodic border",
+     .value = cell<&CellSnapshot::through_image>},
+    {.name = "stretch_min",
+     .unit = "",
+     .doc = "smallest stretch of a segment of the cell, length over rest length",
+     .value = cell<&CellSnapshot::stretch_min>},
+    {.name = "stretch_max",
+     .unit = "",
+     .doc = "largest stretch of a segment of the cell",
+     .value = cell<&CellSnapshot::stretch_max>},
+    {.name = "z", .unit = "m", .doc = "centroid along z", .value = cell<&CellSnapshot::z>, .in_space = true},
+    {.name = "volume",
+     .unit = "m3",
+     .doc = "that the surface encloses",
+     .value = cell<&CellSnapshot::volume>,
+     .in_space = true},
+    {.name = "surface_area",
+     .unit = "m2",
+     .doc = "of the surface",
+     .value = cell<&CellSnapshot::surface_area>,
+     .in_space = true},
+    {.name = "semi_axis_a",
+     .unit = "m",
+     .doc = "largest semi-axis of the ellipsoid that has the enclosed volume's second moments",
+     .value = cell<&CellSnapshot::semi_axes, 0>,
+     .in_space = true},
+    {.name = "semi_axis_b",
+     .unit = "m",
+     .doc = "its middle semi-axis",
+     .value = cell<&CellSnapshot::semi_axes, 1>,
+     .in_space = true},
+    {.name = "semi_axis_c",
+     .unit = "m",
+     .doc = "its smallest semi-axis",
+     .value = cell<&CellSnapshot::semi_axes, 2>,
+     .in_space = true},
+    {.name = "axis_x",
+     .unit = "",
+     .doc = "direction of the smallest semi-axis, which is the axis of a red cell: a unit vector",
+     .value = cell<&CellSnapshot::short_axis, 0>,
+     .in_space = true},
+    {.name = "axis_y", .unit = "", .doc = "likewise", .value = cell<&CellSnapshot::short_axis, 1>, .in_space = true},
+    {.name = "axis_z", .unit = "", .doc = "likewise", .value = cell<&CellSnapshot::short_axis, 2>, .in_space = true},
+};
+
+constexpr Observable aggregate_columns[] = {
+    {.name = "aggregate_count",
+     .unit = "",
+     .doc = "number of aggregates; single cells included",
+     .value = output<&Snapshot::aggregate_count>},
+    {.name = "aggregate",
+     .unit = "",
+     .doc = "label: the smallest number of its cells",
+     .value = aggregate<&AggregateMembers::label>},
+    {.name = "members",
+     .unit = "",
+     .doc = "its cells, joined by `+`; of an aggregate of more than 16 cells they stand in its first row alone",
+     .value = members_of_aggregate},
+    {.name = "through_image",
+     .unit = "",
+     .doc = "1 where it is held together through the periodic border",
+     .value = aggregate<&AggregateMembers::through_image>},
+    {.name = "rotation",
+     .unit = "rad",
+     .doc = "angle of the line through its two outermost cells",
+     .value = rotation_of_aggregate},
+    {.name = "cell_a", .unit = "", .doc = "one cell of a contact", .value = contact<&ContactSnapshot::cell_a>},
+    {.name = "cell_b",
+     .unit = "",
+     .doc = "the other; the same where a cell touches its own image",
+     .value = contact<&ContactSnapshot::cell_b>},
+    {.name = "image_x", .unit = "", .doc = "periodic shift of `cell_b` along x, in boxes", .value = image<0>},
+    {.name = "image_y", .unit = "", .doc = "along y", .value = image<1>},
+    {.name = "gap", .unit = "m", .doc = "smallest gap between the two", .value = contact<&ContactSnapshot::gap>},
+    {.name = "contact_length",
+     .unit = "m",
+     .doc = "rest length of `cell_a`'s membrane that is nearer to `cell_b` than `aggregate_gap`",
+     .value = contact<&ContactSnapshot::contact_length>},
+    {.name = "image_z", .unit = "", .doc = "along z", .value = image<2>, .in_space = true},
+    {.name = "contact_area",
+     .unit = "m2",
+     .doc = "rest area of `cell_a`'s surface nearer to the other than the aggregate gap",
+     .value = contact<&ContactSnapshot::contact_area>,
+     .in_space = true},
+};
+
+constexpr Observable series_columns[] = {
+    {.name = "stage", .unit = "", .doc = "number of the stage, from 0", .value = output<&Snapshot::stage>},
+    {.name = "stage_name", .unit = "", .doc = "its name", .value = output<&Snapshot::stage_name>},
+    {.name = "aggregate_count",
+     .unit = "",
+     .doc = "number of aggregates; single cells included",
+     .value = output<&Snapshot::aggregate_count>,
+     .chart = "Aggregates, single cells included"},
+    {.name = "rotation",
+     .unit = "rad",
+     .doc = "that of the largest aggregate in aggregates.csv (of equal ones the first); `nan` where it has none",
+     .value = [](const Row& row) -> Value { return largest_rotation(row.output); }},
+    {.name = "relative_viscosity",
+     .unit = "",
+     .doc = "where the walls move: mean wall shear stress over viscosity times shear rate (`nan` before they have "
+            "acted); where a force along x drives the flow between walls at rest: flow rate of the suspending "
+            "fluid alone, G H^3/(12 mu), over `flow_rate_m2_per_s`; else, and where they oscillate, `nan`. Both are "
+            "values of the instant: those of a suspension want a steady state and a mean",
+     .value = output<&Snapshot::relative_viscosity>,
+     .chart = "Relative viscosity",
+     .has_means = true},
+    {.name = "shear_rate",
+     .unit = "1/s",
+     .doc = "of the walls during the last step: speed of the upper less that of the lower, over the height; `nan` "
+            "where they do not move",
+     .value = output<&Snapshot::shear_rate>},
+    {.name = "wall_stress_lower",
+     .unit = "Pa",
+     .doc = "mean shear stress on the lower wall (of a tube: on all of it) along +x in the last step, in phase "
+            "with `shear_rate`; `nan` without walls and before they act",
+     .value = output<&Snapshot::wall_stress_lower>,
+     .has_means = true},
+    {.name = "wall_stress_upper",
+     .unit = "Pa",
+     .doc = "likewise, on the upper wall",
+     .value = output<&Snapshot::wall_stress_upper>,
+     .has_means = true},
+    {.name = "pressure_gradient",
+     .unit = "Pa/m",
+     .doc = "force per volume along x that drives the fluid at this instant, beside `fluid.body_force`; `nan` "
+            "where the stage has none",
+     .value = output<&Snapshot::pressure_gradient>,
+     .has_means = true},
+    {.name = "particle_stress",
+     .unit = "Pa",
+     .doc = "xy stress that the cells add: all forces on membranes, between cells too, and viscosity contrast, "
+            "per area of the domain",
+     .value = output<&Snapshot::particle_stress>,
+     .chart = "Particle stress xy"},
+    {.name = "mach_max",
+     .unit = "",
+     .doc = "largest Mach number of the lattice flow at this instant",
+     .value = output<&Snapshot::mach_max>,
+     .chart = "Largest Mach number"},
+    {.name = "area_drift_max",
+     .unit = "",
+     .doc = "largest relative change of a cell's area since the start, of all cells, at this instant",
+     .value = output<&Snapshot::area_drift_max>,
+     .chart = "Largest relative area drift"},
+    {.name = "mass_drift",
+     .unit = "",
+     .doc = "largest relative change of the fluid's mass within a stage, so far",
+     .value = output<&Snapshot::mass_drift>,
+     .chart = "Relative mass drift"},
+    {.name = "area_leakage_max",
+     .unit = "",
+     .doc = "of all cells, the largest change of area, in three dimensions of volume, that "
+            "`numerics.area_correction` put back while the flow strained by about 1, over the area or volume; "
+            "at rest it adds up; `nan` without the correction",
+     .value = output<&Snapshot::area_leakage_max>,
+     .chart = "Largest area kept from leaking, relative"},
+    {.name = "flow_rate",
+     .unit = "m2/s",
+     .doc = "of a driven channel, per depth: integral of the velocity over the height, in three dimensions over the "
+            "cross-section and divided by the box's size along z; `nan` elsewhere",
+     .value = output<&Snapshot::flow_rate>,
+     .has_means = true},
+    {.name = "mean_velocity",
+     .unit = "m/s",
+     .doc = "of a driven channel, along x: the flow rate over the cross-section; `nan` elsewhere",
+     .value = output<&Snapshot::mean_velocity>,
+     .has_means = true},
+    {.name = "cell_free_layer_lower",
+     .unit = "m",
+     .doc = "mean over the lattice's columns of the distance from the lower wall to the nearest membrane; half the "
+            "height counts in a column where none is nearer, so that few cells give a large value. In a tube, of "
+            "the half of its wall below the axis, along rays from the axis a spacing apart at the wall, where the "
+            "radius counts. `nan` without walls or cells",
+     .value = output<&Snapshot::cell_free_layer_lower>,
+     .chart = "Cell-free layer",
+     .line = "lower wall",
+     .has_means = true},
+    {.name = "cell_free_layer_upper",
+     .unit = "m",
+     .doc = "likewise, from the upper wall",
+     .value = output<&Snapshot::cell_free_layer_upper>,
+     .chart = "Cell-free layer",
+     .line = "upper wall",
+     .has_means = true},
+    {.name = "cell_free_layer_empty",
+     .unit = "",
+     .doc = "share of these columns or rays without a cell: above 0.05 the layers are no result; `nan` as they are",
+     .value = output<&Snapshot::cell_free_layer_empty>,
+     .has_means = true},
+    {.name = "aggregate_size_number_mean",
+     .unit = "",
+     .doc = "cells over aggregates; a single cell is an aggregate of one",
+     .value = output<&Snapshot::aggregate_size_number_mean>,
+     .has_means = true},
+    {.name = "aggregate_size_weight_mean",
+     .unit = "",
+     .doc = "size of the aggregate a cell finds itself in, averaged over the cells: sum n^2 / sum n",
+     .value = output<&Snapshot::aggregate_size_weight_mean>,
+     .chart = "Aggregate size, mean over cells",
+     .has_means = true},
+    {.name = "kinetic_energy",
+     .unit = "J/m",
+     .doc = "of the fluid as it is simulated, `density_factor` times denser than it is; docs/physics.md, "
+            "\"Energy\", for this and all below, which are per depth",
+     .value = energy<&EnergySnapshot::kinetic>,
+     .chart = "Kinetic energy of the fluid as simulated"},
+    {.name = "elastic_energy",
+     .unit = "J/m",
+     .doc = "in the membranes: laws of segments and of whole cells; `nan` without cells",
+     .value = energy<&EnergySnapshot::elastic>,
+     .chart = "Energy of the cells",
+     .line = "elastic"},
+    {.name = "bending_energy",
+     .unit = "J/m",
+     .doc = "in the membranes: laws of curvature; `nan` without cells",
+     .value = energy<&EnergySnapshot::bending>,
+     .chart = "Energy of the cells",
+     .line = "bending"},
+    {.name = "interaction_energy",
+     .unit = "J/m",
+     .doc = "of the active potentials between cells, and between cells and walls; `nan` where there is none",
+     .value = energy<&EnergySnapshot::interaction>,
+     .chart = "Energy of the cells",
+     .line = "interaction"},
+    {.name = "total_energy",
+     .unit = "J/m",
+     .doc = "the sum of those that there are; `nan` where a law acts whose energy is not known (summary.json says "
+            "which)",
+     .value = energy<&EnergySnapshot::total>,
+     .chart = "Energy of the cells",
+     .line = "total"},
+    {.name = "viscous_dissipation",
+     .unit = "W/m",
+     .doc = "what the fluid's viscosity takes",
+     .value = energy<&EnergySnapshot::viscous_dissipation>,
+     .chart = "Power",
+     .line = "dissipation in the fluid"},
+    {.name = "membrane_dissipation",
+     .unit = "W/m",
+     .doc = "what viscous membranes and those with a memory take; `nan` without cells",
+     .value = energy<&EnergySnapshot::membrane_dissipation>,
+     .chart = "Power",
+     .line = "in membranes"},
+    {.name = "wall_power",
+     .unit = "W/m",
+     .doc = "what both walls together put in; 0 for walls at rest, `nan` without walls and before they have acted",
+     .value = energy<&EnergySnapshot::wall_power>,
+     .chart = "Power",
+     .line = "from the walls"},
+    {.name = "body_force_power",
+     .unit = "W/m",
+     .doc = "what `fluid.body_force` and the pressure gradient put in; `nan` where neither acts",
+     .value = energy<&EnergySnapshot::body_force_power>,
+     .chart = "Power",
+     .line = "from the body force"},
+};
+
+constexpr Observable size_columns[] = {
+    {.name = "cells",
+     .unit = "",
+     .doc = "the size: cells of an aggregate",
+     .value = [](const Row& row) -> Value { return row.size; }},
+    {.name = "aggregates",
+     .unit = "",
+     .doc = "how many aggregates have it",
+     .value = [](const Row& row) -> Value { return row.aggregates_of_size; }},
+};
+
+std::vector<Observable> with_instant(std::span<const Observable> own) {
+  std::vector<Observable> all(std::begin(instant_columns), std::end(instant_columns));
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
+}
+
+}  // namespace
+
+std::vector<Observable> columns_of_cells() { return with_instant(cell_columns); }
+std::vector<Observable> columns_of_aggregates() { return with_instant(aggregate_columns); }
+std::vector<Observable> columns_of_series() { return with_instant(series_columns); }
+std::vector<Observable> columns_of_aggregate_sizes() { return with_instant(size_columns); }
+
+}  // namespace rouleau::observe

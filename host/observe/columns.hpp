@@ -1,0 +1,16 @@
+// The columns of a run's tables, an entry for each.
+#pragma once
+
+#include <vector>
+
+#include "observable.hpp"
+
+namespace rouleau::observe {
+
+// Of each table (observables.hpp), in their order.
+std::vector<Observable> columns_of_cells();
+std::vector<Observable> columns_of_aggregates();
+std::vector<Observable> columns_of_series();
+std::vector<Observable> columns_of_aggregate_sizes();
+
+}  // namespace rouleau::observe

@@ -1,0 +1,55 @@
+// What a column of a run's tables is, and the values that columns take from an output.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "snapshot.hpp"
+
+namespace rouleau::observe {
+
+/// Cells that hang together, and where that is so.
+struct AggregateMembers {
+  int label;            ///< smallest of its cells
+  int count = 0;        ///< of its cells
+  std::string members;  ///< these, joined by "+"
+  bool through_image = false;
+  std::vector<const ContactSnapshot*> contacts;
+};
+
+/// What a row of a table is about: an output, and something of it.
+struct Row {
+  const Snapshot& output;
+  const CellSnapshot* cell = nullptr;
+  const AggregateMembers* aggregate = nullptr;
+  const ContactSnapshot* contact = nullptr;  ///< none: the aggregate is a cell without contacts
+  int size = 0, aggregates_of_size = 0;
+};
+
+/// Nothing where the column does not apply to the row.
+using Value = std::variant<std::monostate, double, long, bool, std::string>;
+
+struct Observable {
+  std::string_view name;  ///< without the unit
+  std::string_view unit;  ///< coherent SI, such as "J/m"; empty: a number or a text
+  std::string_view doc;   ///< what it is, for the list of columns: Markdown, signs and what `nan` means included
+  Value (*value)(const Row& row);
+  std::string_view chart = {};  ///< title of the report's chart that draws it; empty: none does
+  std::string_view line = {};   ///< which line of that chart it is, where there are several
+  bool has_means = false;       ///< summary.json has its means over the stages (RheologyHistory)
+  bool in_space = false;        ///< there in three dimensions only
+
+  /// The column's name: the name and the unit, "kinetic_energy_J_per_m".
+  [[nodiscard]] std::string column() const;
+};
+
+inline std::string Observable::column() const {
+  std::string text(name);
+  if (!unit.empty()) text += '_';
+  for (const char c : unit) text += c == '/' ? std::string("_per_") : std::string(1, c == ' ' ? '_' : c);
+  return text;
+}
+
+}  // namespace rouleau::observe
