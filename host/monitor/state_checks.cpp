@@ -234,9 +234,10 @@ std::optional<Failure> check_cells(observe::Observer& observer, const scene::Sta
 
 template <int D>
 std::optional<Failure> check_state(observe::Observer& observer, core::AnySolver<D>& solver,
-                                   const scene::StageSetting& setting, const plan::Plan& plan) {
+                                   const core::FluidMeasures<D>& measured, const scene::StageSetting& setting,
+                                   const plan::Plan& plan) {
   const scene::Scene& scene = *plan.scene;
-  const double mach = observer.follow_fluid(solver.fluid());
+  const double mach = observer.follow_fluid(solver.fluid(), measured);
   if (!(mach <= scene.checks.mach)) {
     const scene::Vector place = in_metres(extreme_node(solver.fluid()), D, setting.units.length);
     const bool by_cells = std::isfinite(mach) && !solver.cells().cells.empty() &&
@@ -260,9 +261,9 @@ std::optional<Failure> check_state(observe::Observer& observer, core::AnySolver<
   return check_cells(observer, setting, around, plan);
 }
 
-template std::optional<Failure> check_state(observe::Observer&, core::AnySolver<2>&, const scene::StageSetting&,
-                                            const plan::Plan&);
-template std::optional<Failure> check_state(observe::Observer&, core::AnySolver<3>&, const scene::StageSetting&,
-                                            const plan::Plan&);
+template std::optional<Failure> check_state(observe::Observer&, core::AnySolver<2>&, const core::FluidMeasures<2>&,
+                                            const scene::StageSetting&, const plan::Plan&);
+template std::optional<Failure> check_state(observe::Observer&, core::AnySolver<3>&, const core::FluidMeasures<3>&,
+                                            const scene::StageSetting&, const plan::Plan&);
 
 }  // namespace rouleau::monitor

@@ -50,7 +50,8 @@ template CellEnergy cell_energy(core::AnySolver<2>&);
 template CellEnergy cell_energy(core::AnySolver<3>&);
 
 template <int D>
-EnergySnapshot observe_energy(core::AnySolver<D>& solver, const units::LatticeUnits& units) {
+EnergySnapshot observe_energy(core::AnySolver<D>& solver, const core::Energetics<D>& fluid,
+                              const units::LatticeUnits& units) {
   const core::FluidSetting<D>& setting = solver.fluid().setting();
   // What the lattice has is summed over its depth.
   double depth = 1;
@@ -58,7 +59,6 @@ EnergySnapshot observe_energy(core::AnySolver<D>& solver, const units::LatticeUn
   const double joule = units.to_si(1, units::dimension::energy_per_depth) / depth,
                watt = units.to_si(1, units::dimension::power_per_depth) / depth;
   EnergySnapshot energy;
-  const auto fluid = solver.fluid().energetics();
   energy.kinetic = fluid.kinetic * joule;
   energy.viscous_dissipation = fluid.dissipation * watt;
   energy.total = energy.kinetic;
@@ -82,8 +82,8 @@ EnergySnapshot observe_energy(core::AnySolver<D>& solver, const units::LatticeUn
     energy.bending = membrane.bending * joule;
     energy.membrane_dissipation = membrane.dissipation * watt;
     energy.total += energy.elastic + energy.bending;
-    // What corrected nodes give away and neither the lattice nor a wall gets is lost in the layers beside the membranes,
-    // which the lattice does not resolve and the correction stands for.
+    // What corrected nodes give away and neither the lattice nor a wall gets is lost in the layers beside the
+    // membranes, which the lattice does not resolve and the correction stands for.
     if (tasks->corrects_motion()) {
       const auto share = tasks->wall_share();
       const double to_walls = share.lower[0] * walls.lower + share.upper[0] * walls.upper;
@@ -104,8 +104,8 @@ EnergySnapshot observe_energy(core::AnySolver<D>& solver, const units::LatticeUn
   return energy;
 }
 
-template EnergySnapshot observe_energy(core::AnySolver<2>&, const units::LatticeUnits&);
-template EnergySnapshot observe_energy(core::AnySolver<3>&, const units::LatticeUnits&);
+template EnergySnapshot observe_energy(core::AnySolver<2>&, const core::Energetics<2>&, const units::LatticeUnits&);
+template EnergySnapshot observe_energy(core::AnySolver<3>&, const core::Energetics<3>&, const units::LatticeUnits&);
 
 void EnergyHistory::follow(const Snapshot& snapshot, bool driven, double floor) {
   const EnergySnapshot& energy = snapshot.energy;

@@ -21,9 +21,15 @@ struct CellEnergy {
 template <int D>
 CellEnergy cell_energy(core::AnySolver<D>& solver);
 
-/// State before the next step of `solver`, whose forces have been computed and whose fluid is settled.
+/// State before the next step of `solver`, whose forces have been computed and whose fluid is settled; `fluid`:
+/// measured of it.
 template <int D>
-EnergySnapshot observe_energy(core::AnySolver<D>& solver, const units::LatticeUnits& units);
+EnergySnapshot observe_energy(core::AnySolver<D>& solver, const core::Energetics<D>& fluid,
+                              const units::LatticeUnits& units);
+template <int D>
+EnergySnapshot observe_energy(core::AnySolver<D>& solver, const units::LatticeUnits& units) {
+  return observe_energy(solver, solver.fluid().energetics(), units);
+}
 
 /// Follows the total energy through the stages at rest, where it may only fall.
 class EnergyHistory {

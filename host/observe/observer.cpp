@@ -45,8 +45,8 @@ ContactSnapshot in_si(const CellContact& c, double length) {
   return s;
 }
 
-/// The change of a cell that is the largest: one that is no number above all, of these the last cell's, as of equal ones the
-/// first one's.
+/// The change of a cell that is the largest: one that is no number above all, of these the last cell's, as of equal
+/// ones the first one's.
 struct Change {
   double share = 0;
   int cell = -1;
@@ -116,13 +116,18 @@ double Observer::momentum_residual(const core::CellNodes& m, const std::array<do
 }
 
 template <int D>
-double Observer::follow_fluid(core::AnyFluid<D>& fluid) {
+core::FluidMeasures<D> Observer::measure_fluid(core::AnyFluid<D>& fluid, const scene::StageSetting& setting,
+                                               bool for_output) const {
   fluid.settle();
-  const auto [mass, speed] = fluid.mass_and_speed();
-  if (std::isnan(initial_mass_)) initial_mass_ = mass;
+  return fluid.measure({.energetics = for_output, .row_velocities = for_output && is_driven_channel(setting, *scene_)});
+}
+
+template <int D>
+double Observer::follow_fluid(const core::AnyFluid<D>& fluid, const core::FluidMeasures<D>& measured) {
+  if (std::isnan(initial_mass_)) initial_mass_ = measured.mass;
   const auto nodes = static_cast<double>(fluid.setting().domain.nodes());
-  mass_drift_ = std::max(mass_drift_, std::abs(mass - initial_mass_) / nodes);
-  const double mach = units::mach_number(speed);
+  mass_drift_ = std::max(mass_drift_, std::abs(measured.mass - initial_mass_) / nodes);
+  const double mach = units::mach_number(measured.speed);
   mach_max_ = std::max(mach_max_, mach);
   return mach;
 }
@@ -202,13 +207,14 @@ void Observer::follow_stretch(const core::StretchRange& stretch, CellSnapshot& s
 }
 
 template <int D>
-Snapshot Observer::observe(core::AnySolver<D>& solver, const scene::StageSetting& setting, bool with_fields) {
+Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures<D>& measured,
+                           const scene::StageSetting& setting, bool with_fields) {
   const auto& cells = solver.cells();
   const units::LatticeUnits& units = setting.units;
   Snapshot snapshot;
   snapshot.stage = setting.index;
   snapshot.stage_name = setting.stage->name;
-  snapshot.mach_max = follow_fluid(solver.fluid());
+  snapshot.mach_max = follow_fluid(solver.fluid(), measured);
   snapshot.mass_drift = mass_drift_;
   const double viscosity = core::viscosity_of(setting.tau);
   snapshot.relative_viscosity = snapshot.flow_rate = snapshot.mean_velocity = snapshot.area_leakage_max = std::nan("");
@@ -230,7 +236,7 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const scene::StageSetting
     snapshot.shear_rate = units.to_si((walls.upper - walls.lower) / scene_->domain.nodes[1], units::dimension::rate);
   }
   if (is_driven_channel(setting, *scene_)) {
-    const double rate = flow_rate(fluid);
+    const double rate = flow_rate(fluid, measured.row_velocities);
     if (!oscillates)
       snapshot.relative_viscosity = apparent_viscosity(rate / scene::duct_share(scene_->domain),
                                                        fluid.setting().body_force[0], setting, scene_->domain.nodes[1]);
@@ -273,7 +279,7 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const scene::StageSetting
     snapshot.area_leakage_max = area_leakage(cells, ranks);
     snapshot.membranes = observe_membranes(solver, units);
   }
-  snapshot.energy = observe_energy(solver, units);
+  snapshot.energy = observe_energy(solver, measured.energetics.value(), units);
   if (with_fields) snapshot.fields = observe_fields(solver.fluid(), *scene_, units);
   return snapshot;
 }
@@ -290,9 +296,13 @@ template double Observer::momentum_residual(const core::CellNodes&, const std::a
                                             const core::Ranks<2>&);
 template double Observer::momentum_residual(const core::CellNodes&, const std::array<double, 2>&,
                                             const core::Ranks<3>&);
-template Snapshot Observer::observe(core::AnySolver<2>&, const scene::StageSetting&, bool);
-template Snapshot Observer::observe(core::AnySolver<3>&, const scene::StageSetting&, bool);
-template double Observer::follow_fluid(core::AnyFluid<2>&);
-template double Observer::follow_fluid(core::AnyFluid<3>&);
+template core::FluidMeasures<2> Observer::measure_fluid(core::AnyFluid<2>&, const scene::StageSetting&, bool) const;
+template core::FluidMeasures<3> Observer::measure_fluid(core::AnyFluid<3>&, const scene::StageSetting&, bool) const;
+template Snapshot Observer::observe(core::AnySolver<2>&, const core::FluidMeasures<2>&, const scene::StageSetting&,
+                                    bool);
+template Snapshot Observer::observe(core::AnySolver<3>&, const core::FluidMeasures<3>&, const scene::StageSetting&,
+                                    bool);
+template double Observer::follow_fluid(const core::AnyFluid<2>&, const core::FluidMeasures<2>&);
+template double Observer::follow_fluid(const core::AnyFluid<3>&, const core::FluidMeasures<3>&);
 
 }  // namespace rouleau::observe

@@ -36,24 +36,35 @@ class Observer {
   /// Mass is compared within a stage: a new density factor rescales the populations.
   void start_stage();
 
-  /// State before the next step of `solver`, whose forces must have been computed. `with_fields`: fields are due. All
-  /// ranks together; what is about cells comes to the first, and fields give what they have to it.
+  /// Settles a fluid whose next step's force has been spread, and measures it in one sweep: mass and speed, and for an
+  /// output all that observe() wants to know. All ranks together.
   template <int D>
-  Snapshot observe(core::AnySolver<D>& solver, const scene::StageSetting& setting, bool with_fields);
+  core::FluidMeasures<D> measure_fluid(core::AnyFluid<D>& fluid, const scene::StageSetting& setting,
+                                       bool for_output) const;
+  /// State before the next step of `solver`, whose forces must have been computed, and of whose fluid this has been
+  /// measured for an output. `with_fields`: fields are due. All ranks together; what is about cells comes to the first,
+  /// and fields give what they have to it.
+  template <int D>
+  Snapshot observe(core::AnySolver<D>& solver, const core::FluidMeasures<D>& measured,
+                   const scene::StageSetting& setting, bool with_fields);
+  template <int D>
+  Snapshot observe(core::AnySolver<D>& solver, const scene::StageSetting& setting, bool with_fields) {
+    return observe(solver, measure_fluid(solver.fluid(), setting, true), setting, with_fields);
+  }
 
   /// Follows mass and Mach number; returns the latter, which is NaN if the fluid holds a value that is no number.
   template <int D>
-  double follow_fluid(core::AnyFluid<D>& fluid);
+  double follow_fluid(const core::AnyFluid<D>& fluid, const core::FluidMeasures<D>& measured);
   /// Follows the areas that outlines enclose, the volumes of surfaces; returns the largest relative change since the
   /// start. `cell`: whose. All ranks together, of all cells.
   template <class Cells, int D>
   double follow_area(const Cells& cells, const core::Ranks<D>& ranks, int* cell = nullptr);
-  /// Largest area that the area correction has kept from leaking out of (or into) a cell within a strain of about one, over
-  /// its rest area; `cell`: whose. NaN without that correction. All ranks together, of all cells.
+  /// Largest area that the area correction has kept from leaking out of (or into) a cell within a strain of about one,
+  /// over its rest area; `cell`: whose. NaN without that correction. All ranks together, of all cells.
   template <int D>
   static double area_leakage(const core::CellNodes& cells, const core::Ranks<D>& ranks, int* cell = nullptr);
-  /// Sum of nodal forces, less what walls do to the cells (along y), over the sum of their magnitudes: rounding only, or
-  /// an internal force is unbalanced. All ranks together, of all cells.
+  /// Sum of nodal forces, less what walls do to the cells (along y), over the sum of their magnitudes: rounding only,
+  /// or an internal force is unbalanced. All ranks together, of all cells.
   template <int D = 2>
   static double momentum_residual(const core::CellNodes& cells, const std::array<double, 2>& from_walls = {},
                                   const core::Ranks<D>& ranks = {});

@@ -13,15 +13,15 @@ bool is_driven_channel(const scene::StageSetting& setting, const scene::Scene& s
 }
 
 template <int D>
-double flow_rate(const core::AnyFluid<D>& fluid) {
+double flow_rate(const core::AnyFluid<D>& fluid, const std::vector<double>& row_velocities) {
   const core::Domain<D>& domain = fluid.setting().domain;
-  double rate = core::flow_rate(fluid.row_velocities(), fluid.walls_now(), domain, fluid.setting().solid != nullptr);
+  double rate = core::flow_rate(row_velocities, fluid.walls_now(), domain, fluid.setting().solid != nullptr);
   for (int axis = 2; axis < D; ++axis) rate /= domain.size[axis];
   return rate;
 }
 
-template double flow_rate(const core::AnyFluid<2>&);
-template double flow_rate(const core::AnyFluid<3>&);
+template double flow_rate(const core::AnyFluid<2>&, const std::vector<double>&);
+template double flow_rate(const core::AnyFluid<3>&, const std::vector<double>&);
 
 double apparent_viscosity(double flow_rate, double body_force, const scene::StageSetting& setting, int height) {
   const double viscosity = core::viscosity_of(setting.tau);

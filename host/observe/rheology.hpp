@@ -15,10 +15,15 @@ namespace rouleau::observe {
 bool is_driven_channel(const scene::StageSetting& setting, const scene::Scene& scene);
 
 /// Integral of the velocity along x over the height, averaged over the length; lattice units. Exact for velocities that
-/// are parabolas in y (midpoint rule with its end correction; the walls' velocity counts as a value). The fluid must be
-/// settled, between steps.
+/// are parabolas in y (midpoint rule with its end correction; the walls' velocity counts as a value). From the mean
+/// velocities of the fluid's rows (core::FluidMeasures).
 template <int D>
-double flow_rate(const core::AnyFluid<D>& fluid);
+double flow_rate(const core::AnyFluid<D>& fluid, const std::vector<double>& row_velocities);
+/// Of a settled fluid, between steps.
+template <int D>
+double flow_rate(const core::AnyFluid<D>& fluid) {
+  return flow_rate(fluid, fluid.row_velocities());
+}
 
 /// Flow rate of the suspending fluid alone, G H^3 / (12 mu) of plane Poiseuille flow, over `flow_rate` (lattice): the
 /// relative apparent viscosity of a driven suspension. Not a number where nothing flows but rounding.

@@ -33,8 +33,8 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 /// How many steps ranks take from one time that they ask each other whether somebody wants them to attend to the next.
 constexpr long steps_between_questions = 16;
 
-/// The stages of a run one after another, and what happens between their steps: what one rank does of it. All ranks decide the
-/// same. What one of them alone sees, its clock, its signals and its cells, they tell each other first.
+/// The stages of a run one after another, and what happens between their steps: what one rank does of it. All ranks
+/// decide the same. What one of them alone sees, its clock, its signals and its cells, they tell each other first.
 template <int D>
 class Simulation final : StepHooks {
  public:
@@ -72,8 +72,8 @@ class Simulation final : StepHooks {
     if (directory_ != nullptr) directory_->log(event, details);
   }
 
-  /// What the first solver is made from: the directory's checkpoint, if the run goes on from one, or the scene. The rank that
-  /// has the directory goes first, and tells the others which file it is.
+  /// What the first solver is made from: the directory's checkpoint, if the run goes on from one, or the scene. The
+  /// rank that has the directory goes first, and tells the others which file it is.
   typename Engine<D>::Start find_start() {
     std::optional<typename Engine<D>::Start> start;
     std::string file;
@@ -231,10 +231,11 @@ class Simulation final : StepHooks {
     const bool check_due = step % scene().checks.every_steps == 0;
     const bool last = stage_->due != Ending::none;
     if (cells_due || fields_due || check_due || last) {
-      if (fails(monitor::check_state(state_.observer, solver(), setting(), plan_))) return false;
+      const bool output_due = cells_due || fields_due || last;
+      const core::FluidMeasures<D> fluid = state_.observer.measure_fluid(solver().fluid(), setting(), output_due);
+      if (fails(monitor::check_state(state_.observer, solver(), fluid, setting(), plan_))) return false;
       if (check_due && ranks().several()) balance_.look(ranks(), computed_s(), step, options_.cut_at_checks);
-      if ((cells_due || fields_due || last) && !write(fields_due || (last && !scene().output.fields.never())))
-        return false;
+      if (output_due && !write(fluid, fields_due || (last && !scene().output.fields.never()))) return false;
       const auto* const tasks = solver().cell_tasks();
       state_.momentum_residual = std::max(
           state_.momentum_residual,
@@ -271,10 +272,10 @@ class Simulation final : StepHooks {
     return true;
   }
 
-  /// Writes the present state, unless it has gained energy that nothing gave it: then the run fails, and false is
-  /// returned.
-  bool write(bool with_fields) {
-    observe::Snapshot snapshot = state_.observer.observe(solver(), setting(), with_fields);
+  /// Writes the present state, of whose fluid this has been measured, unless it has gained energy that nothing gave it:
+  /// then the run fails, and false is returned.
+  bool write(const core::FluidMeasures<D>& fluid, bool with_fields) {
+    observe::Snapshot snapshot = state_.observer.observe(solver(), fluid, setting(), with_fields);
     if (ranks().first()) {
       course_.date(snapshot);
       const units::LatticeUnits& units = setting().units;

@@ -2,7 +2,7 @@
 #include <functional>
 #include <limits>
 
-#include "core/fluid/duct_flow.hpp"
+#include "core/fluid/developed_flow.hpp"
 #include "exact_flow.hpp"
 #include "files/velocity_reader.hpp"
 #include "plan/read_scene.hpp"

@@ -28,10 +28,9 @@ MOST_LINES_OF_FUNCTION = 80
 MOST_LINES_OF_UNIT = 450
 # What is still beyond: these numbers may fall, and leave the list; none may rise.
 UNITS_IN_CIRCLES = {}
-LONG_LINES = 316
-LONG_FUNCTIONS = {"core/fluid/energetics": 130, "observe/observables": 183}
-LONG_UNITS = {"core/fluid/fluid": 904, "core/solver/cell_exchange": 507, "hdf5/hdf5_file": 588,
-              "observe/observables": 596}
+LONG_LINES = 0
+LONG_FUNCTIONS = {}
+LONG_UNITS = {}
 # Lines above core that ask whether there are two dimensions or three. What holds for x holds for y and z: loops over the axes of a
 # scene::Vector, words from scene/dimension_words.hpp, templates in D, constants in arrays of both.
 BRANCHES_ON_DIMENSION = 37

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "core/fluid/duct_flow.hpp"
+#include "core/fluid/developed_flow.hpp"
 #include "core/solver/solver.hpp"
 #include "flow_fixture.hpp"
 #include "scene/driving_flow.hpp"
@@ -21,8 +21,8 @@ struct Duct {
   double force = 0, tube_radius = 0;
 };
 
-/// Largest change of a velocity from the start until the slowest mode of a wrong start would have died out, over the largest
-/// velocity. Where walls move, away from the corners by a sixth of the height: there the velocity jumps.
+/// Largest change of a velocity from the start until the slowest mode of a wrong start would have died out, over the
+/// largest velocity. Where walls move, away from the corners by a sixth of the height: there the velocity jumps.
 double change(const Duct& duct) {
   BasicSolverSetup<3> setup{.domain = {duct.size, {true, false, false}}, .tau = 1.5};
   setup.walls = duct.walls;

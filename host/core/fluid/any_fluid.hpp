@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -40,8 +41,32 @@ struct Moments {
   std::array<double, D> velocity;  ///< with half the force
 };
 
-/// Of D dimensions. One thread, between steps. What is said of the whole lattice is the same on all ranks, and all must ask
-/// for it together.
+/// What of the fluid's energy there is and what becomes of it, summed over all nodes; state as moments have it.
+template <int D>
+struct Energetics {
+  double kinetic;                  ///< u^2/2, density 1
+  double dissipation;              ///< what viscosity takes in a step, see energetics.cpp
+  std::array<double, D> velocity;  ///< sums of u
+  double membrane_power;           ///< of the forces beside the body force, f . u
+};
+
+/// What is measured of the whole lattice in one sweep over the populations, and what of it is wanted.
+struct WantedMeasures {
+  bool energetics = false, row_velocities = false;
+};
+template <int D>
+struct FluidMeasures {
+  /// Sum of density deviations and largest speed, as moments would give them; not numbers if any density or velocity is
+  /// none.
+  double mass, speed;
+  std::optional<Energetics<D>> energetics;  ///< if it was wanted
+  /// Mean velocity along x of each row (flow_rate.hpp), solid nodes counted as fluid at rest; empty if it was not
+  /// wanted.
+  std::vector<double> row_velocities;
+};
+
+/// Of D dimensions. One thread, between steps. What is said of the whole lattice is the same on all ranks, and all must
+/// ask for it together.
 template <int D>
 class AnyFluid {
  public:
@@ -52,16 +77,6 @@ class AnyFluid {
   /// Mean shear stresses on the lower and the upper wall across y, along +x; NaN with solid nodes.
   struct WallStress {
     double lower, upper;
-  };
-  struct MassAndSpeed {
-    double mass, speed;  ///< not a number if any density or velocity is none
-  };
-  /// What of the fluid's energy there is and what becomes of it, summed over all nodes; state as moments have it.
-  struct Energetics {
-    double kinetic;                  ///< u^2/2, density 1
-    double dissipation;              ///< what viscosity takes in a step, see energetics.cpp
-    std::array<double, D> velocity;  ///< sums of u
-    double membrane_power;           ///< of the forces beside the body force, f . u
   };
 
   virtual ~AnyFluid() = default;
@@ -88,7 +103,8 @@ class AnyFluid {
   /// How many velocities there are; whether populations are of single precision.
   [[nodiscard]] virtual int populations() const = 0;
   [[nodiscard]] virtual bool single_precision() const = 0;
-  /// Moments of all nodes of the lattice, row after row, on the first rank, which must have room for them; empty on the others.
+  /// Moments of all nodes of the lattice, row after row, on the first rank, which must have room for them; empty on the
+  /// others.
   [[nodiscard]] std::vector<NodeMoments> all_moments() const {
     std::vector<NodeMoments> all;
     if (ranks_.first()) all.reserve(static_cast<std::size_t>(setting_.domain.nodes()));
@@ -96,15 +112,15 @@ class AnyFluid {
                    [&](int, const std::vector<NodeMoments>& band) { all.insert(all.end(), band.begin(), band.end()); });
     return all;
   }
-  /// Mean velocity along x of each row of the lattice (flow_rate.hpp), solid nodes counted as fluid at rest.
-  [[nodiscard]] virtual std::vector<double> row_velocities() const = 0;
-  /// Sum of density deviations and largest speed, as moments would give them, in one sweep.
-  [[nodiscard]] virtual MassAndSpeed mass_and_speed() const = 0;
+  /// Settled, with the next step's force spread.
+  [[nodiscard]] virtual FluidMeasures<D> measure(WantedMeasures wanted) const = 0;
+  [[nodiscard]] FluidMeasures<D> mass_and_speed() const { return measure(WantedMeasures{}); }
   [[nodiscard]] double mass() const { return mass_and_speed().mass; }
-  [[nodiscard]] virtual Energetics energetics() const = 0;
-  /// What the fluid has done to the walls in the last step, by momentum exchange. What membranes beside a wall do to it is
-  /// not in it: AnySolver::wall_forces(). NaN between the start of a fluid at rest (or taken over) and its first step: walls
-  /// that have just begun to move have exchanged nothing yet.
+  [[nodiscard]] Energetics<D> energetics() const { return *measure({.energetics = true}).energetics; }
+  [[nodiscard]] std::vector<double> row_velocities() const { return measure({.row_velocities = true}).row_velocities; }
+  /// What the fluid has done to the walls in the last step, by momentum exchange. What membranes beside a wall do to it
+  /// is not in it: AnySolver::wall_forces(). NaN between the start of a fluid at rest (or taken over) and its first
+  /// step: walls that have just begun to move have exchanged nothing yet.
   [[nodiscard]] virtual WallForces<D> wall_forces() const = 0;
   [[nodiscard]] WallStress wall_stress() const { return mean_wall_stress(wall_forces()); }
   [[nodiscard]] WallStress mean_wall_stress(const WallForces<D>& forces) const {

@@ -1,9 +1,8 @@
-// Kinetic energy and viscous dissipation of the fluid, for the energy ledger.
+#include "energetics.hpp"
+
+#include <algorithm>
 #include <rouleau/dispatch.hpp>
 #include <rouleau/pack.hpp>
-
-#include "core/domain/exact_sum.hpp"
-#include "fluid.hpp"
 
 namespace rouleau::core {
 
@@ -125,31 +124,57 @@ struct SumEnergy {
   }
 };
 
-/// Velocities of rows with a node more at both ends, and of those around the block, of three layers across the last axis
-/// that follow each other.
-template <int D>
-class VelocityRows {
- public:
-  explicit VelocityRows(const Box<D>& block) {
-    stride_[0] = 1;
-    for (int k = 1; k < D; ++k) stride_[k] = stride_[k - 1] * (block.size(k - 1) + 2);
-    for (auto& values : values_) values.resize(static_cast<std::size_t>(stride_[D - 1]) * layers);
+/// Velocities of row i of the block, x in [0, nx), and where the block wraps around in [-1, nx].
+template <class T, class Set>
+void find_velocities(const FluidState<T, Set>& state, int i, const std::array<double*, Set::dimension>& u) {
+  using Task = VelocityTask<T, Set>;
+  static const auto function = Dispatch<FindVelocity<T, Set>, const Task*>::pick();
+  const T* in[Set::velocity_count];
+  const auto row = state.lattice.row(i);
+  state.lattice.row_pointers(state.parity, row, in);
+  state.mask.for_solid(i, [&](int begin, int end) {
+    for (double* component : u) std::fill(component + begin, component + end, 0.0);
+  });
+  state.mask.for_spans(i, [&](const MaskSpan& span) {
+    Task task{};
+    task.count = span.end - span.begin;
+    for (int q = 0; q < Set::velocity_count; ++q) task.in[q] = in[q] + span.begin;
+    for (int k = 0; k < Set::dimension; ++k) {
+      task.body_force[k] = state.setting.body_force[k];
+      task.velocity[k] = u[k] + span.begin;
+      if (state.has_force(span)) task.force[k] = state.force[k].row(row) + span.begin;
+    }
+    function(&task);
+  });
+  const int nx = state.nx();
+  for (double* component : u) {
+    if (state.setting.domain.wraps(0)) component[-1] = component[nx - 1], component[nx] = component[0];
   }
-  /// Every component of a row, at x = 0; its coordinates in [-1, size].
-  [[nodiscard]] std::array<double*, D> row(std::array<int, D - 1> row) {
-    row[D - 2] = (row[D - 2] + 1) % layers - 1;
-    std::ptrdiff_t at = 1;
-    for (int k = 1; k < D; ++k) at += stride_[k] * (row[k - 1] + 1);
-    std::array<double*, D> u;
-    for (int k = 0; k < D; ++k) u[k] = values_[k].data() + at;
-    return u;
-  }
+}
 
- private:
-  static constexpr int layers = 3;
-  std::array<std::ptrdiff_t, D> stride_;
-  std::array<std::vector<double>, D> values_;
-};
+/// The rows of velocities around a row, and its populations.
+template <class T, class Set>
+EnergyTask<T, Set> energy_task(const FluidState<T, Set>& state, VelocityRows<Set::dimension>& rows,
+                               const typename FluidState<T, Set>::Row& row) {
+  constexpr int dimension = Set::dimension;
+  EnergyTask<T, Set> task{};
+  task.count = state.nx();
+  state.lattice.row_pointers(state.parity, row, task.in);
+  for (int place = 0; place < RowsAround<Set>::count; ++place) {
+    auto beside = row;
+    bool wall = false;
+    for (int k = 1, rest = place; k < dimension; ++k, rest /= 3) {
+      int& coordinate = beside[k - 1];
+      coordinate += rest % 3 - 1;
+      wall = wall || (coordinate < 0 && state.setting.domain.wall_below(k)) ||
+             (coordinate >= state.lattice.size(k) && state.setting.domain.wall_above(k));
+    }
+    if (wall) continue;
+    const std::array<double*, dimension> u = rows.row(beside);
+    std::copy(u.begin(), u.end(), task.velocity[place]);
+  }
+  return task;
+}
 
 }  // namespace
 
@@ -161,168 +186,144 @@ class VelocityRows {
 // for links that end in a wall the momentum exchanged with it times u(x) - u_wall. In a flow that varies slowly this is
 // 2 mu S:S. Unlike that it is right on the scale of the lattice, too, on which the membranes' forces are spread.
 template <class T, class Set>
-void Fluid<T, Set>::velocities(int i, const std::array<double*, dimension>& u) const {
-  using Task = VelocityTask<T, Set>;
-  static const auto function = Dispatch<FindVelocity<T, Set>, const Task*>::pick();
-  const T* in[velocity_count];
-  const Row row = lattice_.row(i);
-  lattice_.row_pointers(parity_, row, in);
-  mask_.for_solid(i, [&](int begin, int end) {
-    for (double* component : u) std::fill(component + begin, component + end, 0.0);
-  });
-  mask_.for_spans(i, [&](const MaskSpan& span) {
-    Task task{};
-    task.count = span.end - span.begin;
-    for (int q = 0; q < velocity_count; ++q) task.in[q] = in[q] + span.begin;
+EnergySum<T, Set>::EnergySum(const FluidState<T, Set>& state, const FluidHalo<T, Set>* halo, const WallVelocity& walls)
+    : state_(state),
+      halo_(halo),
+      walls_(walls),
+      rows_(state.setting.domain.block),
+      sums_(sum_of_velocity + dimension),
+      power_(static_cast<std::size_t>(state.nx())) {
+  if (halo_ != nullptr) exchange_edges();
+  find_layer(-1), find_layer(0);
+}
+
+template <class T, class Set>
+void EnergySum<T, Set>::exchange_edges() {
+  const EdgeNodes<dimension>& nodes = halo_->edges();
+  const int nx = state_.nx();
+  std::array<double*, dimension> values;
+  for (int k = 0; k < dimension; ++k) {
+    edge_[k].resize(nodes.count());
+    values[k] = edge_[k].data();
+  }
+  for (int i = 0; i < state_.lattice.rows(); ++i) {
+    const Row row = state_.lattice.row(i);
+    const bool whole = nodes.whole(row);
+    if (!whole && state_.setting.domain.wraps(0)) continue;
+    const std::array<double*, dimension> u = rows_.row(row);  // for a moment
+    find_velocities(state_, i, u);
     for (int k = 0; k < dimension; ++k) {
-      task.body_force[k] = setting_.body_force[k];
-      task.velocity[k] = u[k] + span.begin;
-      if (span.active && setting_.membranes) task.force[k] = force_[k].row(row) + span.begin;
+      double* const to = values[k];
+      if (whole) {
+        std::copy_n(u[k], nx, to + nodes.place(0, row));
+      } else {
+        for (const int x : {0, nx - 1}) to[nodes.place(x, row)] = u[k][x];
+      }
     }
-    function(&task);
-  });
-  for (double* component : u) {
-    if (setting_.domain.wraps(0)) component[-1] = component[nx() - 1], component[nx()] = component[0];
+  }
+  halo_->exchange_edges(values);
+}
+
+template <class T, class Set>
+int EnergySum<T, Set>::inside(int axis, int place) const {
+  const int n = state_.lattice.size(axis);
+  return state_.setting.domain.wraps(axis) ? (place + n) % n : (place < n ? place : -1);
+}
+
+/// A row of this block or, `from` negative, of others.
+template <class T, class Set>
+void EnergySum<T, Set>::find_row(int from, const Row& row) {
+  const int nx = state_.nx();
+  const std::array<double*, dimension> u = rows_.row(row);
+  if (from >= 0) find_velocities(state_, from, u);
+  for (int k = 0; halo_ != nullptr && k < dimension; ++k) {
+    const auto other = [&](int x) { return edge_[k][static_cast<std::size_t>(halo_->edges().place(x, row))]; };
+    if (from < 0) {
+      for (int x = -1; x <= nx; ++x) u[k][x] = other(x);
+    } else if (!state_.setting.domain.wraps(0)) {
+      u[k][-1] = other(-1), u[k][nx] = other(nx);
+    }
   }
 }
 
 template <class T, class Set>
-typename Fluid<T, Set>::Energetics Fluid<T, Set>::energetics() const {
+void EnergySum<T, Set>::find_layer(int layer) {
+  const int from = inside(dimension - 1, layer);
+  if constexpr (dimension == 2) {
+    find_row(from, {layer});
+  } else {
+    for (int y = -1; y <= state_.lattice.size(1); ++y) {
+      const int from_y = inside(1, y);
+      find_row(from < 0 || from_y < 0 ? -1 : from_y + state_.lattice.size(1) * from, {y, layer});
+    }
+  }
+}
+
+template <class T, class Set>
+void EnergySum<T, Set>::add(int i) {
   using Task = EnergyTask<T, Set>;
   static const auto function = Dispatch<SumEnergy<T, Set>, const Task*>::pick();
-  const int nx = this->nx();
-  const Domain<dimension>& domain = setting_.domain;
   constexpr int last = dimension - 1;
-  const int layers = lattice_.size(last), rows_of_layer = lattice_.rows() / layers;
-  VelocityRows<dimension> rows(domain.block);
-  // Of the nodes at borders to other blocks, which tell each other of theirs before any row is summed up.
-  std::array<std::vector<double>, dimension> edge;
-  if (energetics_halo_) {
-    std::array<double*, dimension> edge_nodes;
-    for (int k = 0; k < dimension; ++k) {
-      edge[k].resize(edge_nodes_->count());
-      edge_nodes[k] = edge[k].data();
-    }
-    for (int i = 0; i < lattice_.rows(); ++i) {
-      const Row row = lattice_.row(i);
-      const bool whole = edge_nodes_->whole(row);
-      if (!whole && domain.wraps(0)) continue;
-      const std::array<double*, dimension> u = rows.row(row);  // for a moment
-      velocities(i, u);
-      for (int k = 0; k < dimension; ++k) {
-        double* const to = edge_nodes[k];
-        if (whole) {
-          std::copy_n(u[k], nx, to + edge_nodes_->place(0, row));
-        } else {
-          for (const int x : {0, nx - 1}) to[edge_nodes_->place(x, row)] = u[k][x];
-        }
+  const int rows_of_layer = state_.lattice.rows() / state_.lattice.size(last);
+  const Row row = state_.lattice.row(i);
+  if (i % rows_of_layer == 0) find_layer(row[last - 1] + 1);
+  Task task = energy_task(state_, rows_, row);
+  task.wall_speed[0] = walls_.lower, task.wall_speed[2] = walls_.upper;
+  for (int k = 0; k < dimension; ++k) task.sum[k] = &sums_[sum_of_velocity + k];
+  task.kinetic = &sums_[kinetic];
+  task.dissipation = &sums_[dissipation];
+  const std::array<double*, dimension> u = rows_.row(row);
+  velocity_along_x_ = u[0];
+  if (!state_.links) {
+    function(&task);
+  } else {
+    state_.mask.for_fluid(i, [&](int begin, int end) {
+      Task part = task;
+      part.count = end - begin;
+      for (const T*& in : part.in) in += begin;
+      for (auto& beside : part.velocity) {
+        for (const double*& component : beside) component += component != nullptr ? begin : 0;
       }
-    }
-    energetics_halo_->begin(Way::out, edge_nodes);
-    energetics_halo_->end(Way::out, edge_nodes);
-  }
-  const auto inside = [&](int axis, int place) {
-    const int n = lattice_.size(axis);
-    return domain.wraps(axis) ? (place + n) % n : (place < n ? place : -1);
-  };
-  // A row of this block or, `from` negative, of others.
-  const auto find_row = [&](int from, const Row& row) {
-    const std::array<double*, dimension> u = rows.row(row);
-    if (from >= 0) velocities(from, u);
-    for (int k = 0; energetics_halo_ && k < dimension; ++k) {
-      const auto other = [&](int x) { return edge[k][static_cast<std::size_t>(edge_nodes_->place(x, row))]; };
-      if (from < 0) {
-        for (int x = -1; x <= nx; ++x) u[k][x] = other(x);
-      } else if (!domain.wraps(0)) {
-        u[k][-1] = other(-1), u[k][nx] = other(nx);
-      }
-    }
-  };
-  const auto find = [&](int layer) {
-    const int from = inside(last, layer);
-    if constexpr (dimension == 2) {
-      find_row(from, {layer});
-    } else {
-      for (int y = -1; y <= lattice_.size(1); ++y) {
-        const int from_y = inside(1, y);
-        find_row(from < 0 || from_y < 0 ? -1 : from_y + lattice_.size(1) * from, {y, layer});
-      }
-    }
-  };
-  find(-1), find(0);
-  enum { kinetic, membrane_power, dissipation, sum_of_velocity };
-  std::vector<ExactSum> sums(sum_of_velocity + dimension);
-  std::vector<double> power(static_cast<std::size_t>(nx));
-  for (int i = 0; i < lattice_.rows(); ++i) {
-    const Row row = lattice_.row(i);
-    if (i % rows_of_layer == 0) find(row[last - 1] + 1);
-    Task task{};
-    task.wall_speed[0] = last_walls_.lower, task.wall_speed[2] = last_walls_.upper;
-    task.count = nx;
-    for (int k = 0; k < dimension; ++k) task.sum[k] = &sums[sum_of_velocity + k];
-    task.kinetic = &sums[kinetic];
-    task.dissipation = &sums[dissipation];
-    lattice_.row_pointers(parity_, row, task.in);
-    for (int place = 0; place < RowsAround<Set>::count; ++place) {
-      Row beside = row;
-      bool wall = false;
-      for (int k = 1, rest = place; k < dimension; ++k, rest /= 3) {
-        int& coordinate = beside[k - 1];
-        coordinate += rest % 3 - 1;
-        wall = wall || (coordinate < 0 && domain.wall_below(k)) ||
-               (coordinate >= lattice_.size(k) && domain.wall_above(k));
-      }
-      if (wall) continue;
-      const std::array<double*, dimension> u = rows.row(beside);
-      std::copy(u.begin(), u.end(), task.velocity[place]);
-    }
-    const std::array<double*, dimension> u = rows.row(row);
-    if (!links_) {
-      function(&task);
-    } else {
-      mask_.for_fluid(i, [&](int begin, int end) {
-        Task part = task;
-        part.count = end - begin;
-        for (const T*& in : part.in) in += begin;
-        for (auto& beside : part.velocity) {
-          for (const double*& component : beside) component += component != nullptr ? begin : 0;
-        }
-        function(&part);
-      });
-      // A link into a wall counts with what left, too; beyond plane walls that has been taken for what came back.
-      links_->for_links(i, [&](int x, int q, double left, bool plane) {
-        double change = 0;
-        for (int k = 0; k < dimension; ++k) change += Set::velocity[q][k] * u[k][x];
-        sums[dissipation].add(-(plane ? left - static_cast<double>(task.in[q][x]) : left) * change);
-      });
-    }
-    if (!setting_.membranes) continue;
-    mask_.for_spans(i, [&](const MaskSpan& span) {
-      if (!span.active) return;
-      for (int x = span.begin; x < span.end; ++x) {
-        power[x] = 0;
-        for (int k = 0; k < dimension; ++k)
-          power[x] += (static_cast<double>(force_[k].row(row)[x]) - setting_.body_force[k]) * u[k][x];
-      }
-      sums[membrane_power].add(power.data() + span.begin, static_cast<std::size_t>(span.end - span.begin));
+      function(&part);
+    });
+    // A link into a wall counts with what left, too; beyond plane walls that has been taken for what came back.
+    state_.links->for_links(i, [&](int x, int q, double left, bool plane) {
+      double change = 0;
+      for (int k = 0; k < dimension; ++k) change += Set::velocity[q][k] * u[k][x];
+      sums_[dissipation].add(-(plane ? left - static_cast<double>(task.in[q][x]) : left) * change);
     });
   }
-  add_up(ranks_, sums);
-  Energetics energetics{.kinetic = sums[kinetic].value(),
-                        .dissipation = sums[dissipation].value(),
-                        .velocity = {},
-                        .membrane_power = sums[membrane_power].value()};
-  for (int k = 0; k < dimension; ++k) energetics.velocity[k] = sums[sum_of_velocity + k].value();
+  if (state_.setting.membranes) add_membrane_power(i, u);
+}
+
+template <class T, class Set>
+void EnergySum<T, Set>::add_membrane_power(int i, const std::array<double*, dimension>& u) {
+  const Row row = state_.lattice.row(i);
+  state_.mask.for_spans(i, [&](const MaskSpan& span) {
+    if (!span.active) return;
+    for (int x = span.begin; x < span.end; ++x) {
+      power_[x] = 0;
+      for (int k = 0; k < dimension; ++k)
+        power_[x] += (static_cast<double>(state_.force[k].row(row)[x]) - state_.setting.body_force[k]) * u[k][x];
+    }
+    sums_[membrane_power].add(power_.data() + span.begin, static_cast<std::size_t>(span.end - span.begin));
+  });
+}
+
+template <class T, class Set>
+auto EnergySum<T, Set>::total(const Ranks<dimension>& ranks) -> Energetics<dimension> {
+  add_up(ranks, sums_);
+  Energetics<dimension> energetics{.kinetic = sums_[kinetic].value(),
+                                   .dissipation = sums_[dissipation].value(),
+                                   .velocity = {},
+                                   .membrane_power = sums_[membrane_power].value()};
+  for (int k = 0; k < dimension; ++k) energetics.velocity[k] = sums_[sum_of_velocity + k].value();
   return energetics;
 }
 
-#define ROULEAU_INSTANTIATE(T, Set)                                                          \
-  template void Fluid<T, Set>::velocities(int, const std::array<double*, dimension>&) const; \
-  template Fluid<T, Set>::Energetics Fluid<T, Set>::energetics() const;
-ROULEAU_INSTANTIATE(float, D2Q9)
-ROULEAU_INSTANTIATE(double, D2Q9)
-ROULEAU_INSTANTIATE(float, D3Q19)
-ROULEAU_INSTANTIATE(double, D3Q19)
-#undef ROULEAU_INSTANTIATE
+template class EnergySum<float, D2Q9>;
+template class EnergySum<double, D2Q9>;
+template class EnergySum<float, D3Q19>;
+template class EnergySum<double, D3Q19>;
 
 }  // namespace rouleau::core

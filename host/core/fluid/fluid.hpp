@@ -9,22 +9,12 @@
 
 #include "any_fluid.hpp"
 #include "base/worker.hpp"
-#include "core/domain/halo.hpp"
 #include "core/model/model.hpp"
-#include "edge_nodes.hpp"
-#include "field.hpp"
-#include "lattice.hpp"
-#include "node_mask.hpp"
-#include "periodic.hpp"
-#include "solid_links.hpp"
+#include "fluid_halo.hpp"
+#include "fluid_state.hpp"
 #include "walls.hpp"
 
 namespace rouleau::core {
-
-/// So many rows of a block, from its first one on and up to its last one.
-struct EndRows {
-  int below = 0, above = 0;
-};
 
 template <class T, class Set = D2Q9>
 class Fluid final : public AnyFluid<Set::dimension> {
@@ -33,33 +23,29 @@ class Fluid final : public AnyFluid<Set::dimension> {
  public:
   static constexpr int dimension = Set::dimension, velocity_count = Set::velocity_count;
   using Row = typename Lattice<T, Set>::Row;
-  using typename Any::NodeMoments, typename Any::MassAndSpeed, typename Any::Energetics;
+  using typename Any::NodeMoments;
   template <class V>
   using Take = typename Any::template Take<V>;
 
-  /// `ranks`: who holds the other blocks, if the domain's block is not the whole lattice; used as long as the fluid lives.
+  /// `ranks`: who holds the other blocks, if the domain's block is not the whole lattice; used as long as the fluid
+  /// lives.
   Fluid(const FluidSetting<dimension>& setting, CollisionOperator collision, const Ranks<dimension>& ranks = {});
 
   /// All rows of the block (Lattice::row).
-  [[nodiscard]] Range rows() const { return {0, lattice_.rows()}; }
-  [[nodiscard]] NodeMask& mask() { return mask_; }
+  [[nodiscard]] Range rows() const { return {0, state_.lattice.rows()}; }
+  [[nodiscard]] NodeMask& mask() { return state_.mask; }
   /// Force density: what the next step() acts with. It writes velocity() over it, in the same memory.
-  [[nodiscard]] VectorField<T, dimension>& force() { return force_; }
+  [[nodiscard]] VectorField<T, dimension>& force() { return state_.force; }
   /// Velocity in active nodes, halo included: what the last step() has left.
-  [[nodiscard]] const VectorField<T, dimension>& velocity() const { return force_; }
-  [[nodiscard]] Field<T, dimension>& relaxation_rate() { return relaxation_rate_; }
-  [[nodiscard]] std::size_t bytes() const;
+  [[nodiscard]] const VectorField<T, dimension>& velocity() const { return state_.force; }
+  [[nodiscard]] Field<T, dimension>& relaxation_rate() { return state_.relaxation_rate; }
+  [[nodiscard]] std::size_t bytes() const { return state_.bytes(); }
 
   /// Sets velocity u(y) with shear rate du/dy along x everywhere, density 1 (equilibrium and first-order part).
   void set_profile(const std::function<double(double y)>& velocity, const std::function<double(double y)>& shear_rate);
-  /// General initial state by node of the lattice: deviation of density, velocity and its gradient {du/dx, du/dy, ...,
-  /// dv/dx, dv/dy, ...} at a node.
-  struct State {
-    double density, velocity[dimension], gradient[dimension * dimension];
-  };
-  using StateOfNode =
-      std::conditional_t<dimension == 2, std::function<State(int x, int y)>, std::function<State(int x, int y, int z)>>;
-  void set_state(const StateOfNode& state);
+  /// General initial state.
+  using State = NodeState<dimension>;
+  void set_state(const StateOfNode<dimension>& state);
   /// Everything at rest, under the body force, half of which is still to act (Moments::velocity). Where there is none
   /// this is the state that a fluid is made in.
   void set_rest();
@@ -68,9 +54,9 @@ class Fluid final : public AnyFluid<Set::dimension> {
   /// rule. Where the body force changes the velocity does not, and the half of it that populations lack does.
   void take_over(Fluid& other, double factor);
 
-  /// Without inertia: the unsteady term is du/dt as seen from a frame that moves at this velocity (moving_frame.hpp). Of
-  /// the next steps and of states that are set; 0 to begin with.
-  void set_frame(double ux, double uy) requires(dimension == 2) { frame_[0] = ux, frame_[1] = uy; }
+  /// Without inertia: the unsteady term is du/dt as seen from a frame that moves at this velocity (moving_frame.hpp).
+  /// Of the next steps and of states that are set; 0 to begin with.
+  void set_frame(double ux, double uy) requires(dimension == 2) { state_.frame = {ux, uy}; }
   /// What drives the next steps, where that changes with time: the speeds of the walls during a step, and the force
   /// along x at its beginning. One worker, between steps.
   void set_drive(const WallVelocity& walls, double body_force_x);
@@ -82,25 +68,32 @@ class Fluid final : public AnyFluid<Set::dimension> {
   void step(Range rows);
   /// In which order step() takes rows, and bands of rows are best taken: what the last step has touched last is still
   /// in the cache.
-  [[nodiscard]] bool sweeps_up() const { return parity_ == Parity::even; }
+  [[nodiscard]] bool sweeps_up() const { return state_.parity == Parity::even; }
   /// Ends the step, once all rows have been stepped.
   void end_step() {
-    parity_ = next(parity_);
+    state_.parity = next(state_.parity);
     walls_have_acted_ = true;
     last_walls_ = setting_.walls;
   }
   /// Rows of which other blocks want something: when they have been stepped before the others, and none but them,
   /// begin_halo_of_ends() may be called. None without other blocks.
-  [[nodiscard]] EndRows end_rows() const;
-  /// One worker, before end_step(): sends to other blocks, of whose borders these rows have all, what they want of this step.
-  void begin_halo_of_ends();
+  [[nodiscard]] EndRows end_rows() const { return core::end_rows(setting_.domain, ranks_); }
+  /// One worker, before end_step(): sends to other blocks, of whose borders these rows have all, what they want of this
+  /// step.
+  void begin_halo_of_ends() {
+    if (halo_) halo_->begin_ends();
+  }
   /// One worker, after end_step(): sends what other blocks still want of it. Nothing without other blocks.
-  void begin_halo();
+  void begin_halo() {
+    if (halo_) halo_->begin();
+  }
   /// One worker, before the velocity is read or the next step is taken: takes what they have sent.
-  void end_halo();
+  void end_halo() {
+    if (halo_) halo_->end();
+  }
 
   // Observers (AnyFluid).
-  void settle() override;
+  void settle() override { state_.settle(); }
   /// Moments of row i of the block, x = 0..nx-1, of the state before the next step. The force of that step must have
   /// been spread.
   void moments(int i, std::vector<NodeMoments>& values) const;
@@ -110,41 +103,23 @@ class Fluid final : public AnyFluid<Set::dimension> {
   void copy_populations(int q, std::vector<double>& values) const override;
   [[nodiscard]] int populations() const override { return velocity_count; }
   [[nodiscard]] bool single_precision() const override { return std::is_same_v<T, float>; }
-  [[nodiscard]] std::vector<double> row_velocities() const override;
-  /// The same without the half step that the membranes' forces have still to act, and so before these are known; after
-  /// settle(). All of them together have no share in the mean, but for what walls take of it.
+  [[nodiscard]] FluidMeasures<dimension> measure(WantedMeasures wanted) const override;
+  /// Mean velocities of rows without the half step that the membranes' forces have still to act, and so before these
+  /// are known; after settle(). All of them together have no share in the mean, but for what walls take of it.
   [[nodiscard]] std::vector<double> row_velocities_without_membranes() const;
-  [[nodiscard]] MassAndSpeed mass_and_speed() const override;
   [[nodiscard]] WallForces<dimension> wall_forces() const override;
-  [[nodiscard]] Energetics energetics() const override;
   /// Populations before the next collision, for tests.
   [[nodiscard]] double population(int q, int x, const Row& row) const;
   [[nodiscard]] double population(int q, int x, int y) const requires(dimension == 2) {
     return population(q, x, Row{y});
   }
-  /// Goes on from what copy_populations() or gather_populations() gave: `populations(q)` returns the block's for every q.
+  /// Goes on from what copy_populations() or gather_populations() gave: `populations(q)` returns the block's for every
+  /// q.
   void restore(const std::function<std::vector<double>(int q)>& populations, bool walls_have_acted);
 
  private:
-  /// Moments, 1/tau and populations of row i of the block, x = 0..nx-1.
-  void copy_moments(int i, NodeMoments* to) const;
-  void copy_relaxation_rates(int i, double* to) const;
-  void copy_population(int q, int i, double* to) const;
-  /// Velocities of row i, x in [0, nx), and where the block wraps around in [-1, nx].
-  void velocities(int i, const std::array<double*, dimension>& u) const;
-  /// Nodes of the block along x.
-  [[nodiscard]] int nx() const { return setting_.domain.block.size(0); }
-  /// 1/tau of the fluid at a height of the block, cells aside.
-  [[nodiscard]] double rate_of_row(const Row& row) const {
-    return setting_.viscosity_of_rows.empty() ? setting_.relaxation_rate : rate_of_row_[row[0]];
-  }
-  [[nodiscard]] bool in_layer(const Row& row) const { return rate_of_row(row) != setting_.relaxation_rate; }
-  [[nodiscard]] double equilibrium(int q, double density, const std::array<double, dimension>& u) const;
   [[nodiscard]] bool driven() const { return setting_.body_force != std::array<double, dimension>{}; }
   void fill_body_force_rows();
-  /// Sums over all ranks, row by row of the lattice, of what `add(i, sum)` adds of row i of the block.
-  template <class Function>
-  [[nodiscard]] std::vector<double> means_of_rows(Function add) const;
   /// Whether membranes may reach the halo that belongs to row i.
   [[nodiscard]] bool reaches_border(int i, const Row& row) const;
   using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
@@ -163,32 +138,14 @@ class Fluid final : public AnyFluid<Set::dimension> {
   void fetch_row(int i, const Call& call, const Row& from) const;
   /// Sets what membranes have spread to the solid nodes of row i to 0: their velocity.
   void rest_solid(int i, const Row& row);
-  /// The populations have been set.
-  void restart_links();
   void add_moving_frame(int i, const Row& row, T* (&out)[velocity_count]);
-
-  void make_halos();
-  [[nodiscard]] bool in_end_rows(int layer) const;
-  template <class Function>
-  void with_arrays(Parity parity, Function function);
-  void send_halo(Parity parity, bool early);
 
   using Any::setting_, Any::ranks_, Any::walls_have_acted_, Any::last_walls_;
   CollisionOperator collision_;
   void (*collide_)(const void* self, const Block* block);  ///< of the collision model
-  Lattice<T, Set> lattice_;
-  Parity parity_ = Parity::even;
-  std::array<double, dimension> frame_ = {};
-  NodeMask mask_;
-  std::unique_ptr<SolidLinks<T, Set>> links_;  ///< null without solid nodes
-  VectorField<T, dimension> force_;
-  Field<T, dimension> relaxation_rate_;
-  std::vector<double> rate_of_row_;  ///< by height in the block; empty without layers
-  std::unique_ptr<Halo<T, dimension>> population_halo_, velocity_halo_;  ///< null without other blocks
-  std::unique_ptr<const EdgeNodes<dimension>> edge_nodes_;               ///< null without other blocks
-  std::unique_ptr<Halo<double, dimension>> energetics_halo_;             ///< of velocities, between edge_nodes_
-  bool ends_sent_ = false;                                               ///< of this step
-  std::array<std::vector<T>, dimension> body_force_row_;                 ///< constant; empty without a body force
+  FluidState<T, Set> state_;
+  std::unique_ptr<FluidHalo<T, Set>> halo_;               ///< null without other blocks
+  std::array<std::vector<T>, dimension> body_force_row_;  ///< constant; empty without a body force
 };
 
 extern template class Fluid<float>;

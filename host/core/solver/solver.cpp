@@ -4,8 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/fluid/channel_flow.hpp"
-#include "core/fluid/duct_flow.hpp"
+#include "core/fluid/developed_flow.hpp"
 #include "core/fluid/flow_rate.hpp"
 #include "core/membrane/motion.hpp"
 
@@ -187,8 +186,8 @@ void Solver<T, Set>::run_rows(Task task, Range rows) {
 
 template <class T, class Set>
 RowBands Solver<T, Set>::bands() const {
-  // Force and velocity of a band's active nodes should stay in a cache of this size until they have been used; about ten
-  // of the lattice are active for one of a membrane.
+  // Force and velocity of a band's active nodes should stay in a cache of this size until they have been used; about
+  // ten of the lattice are active for one of a membrane.
   constexpr int cache = 1 << 19, active_per_node = 10;
   const int rows = row_count(setup_.domain.block), columns = setup_.domain.block.size(0);
   const int active = std::clamp(active_per_node * cells_.node_count() / rows, 1, columns);  // of a row

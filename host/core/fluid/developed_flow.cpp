@@ -1,4 +1,4 @@
-#include "duct_flow.hpp"
+#include "developed_flow.hpp"
 
 #include <cmath>
 #include <numbers>

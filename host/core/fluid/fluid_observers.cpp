@@ -1,0 +1,300 @@
+#include "fluid_observers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <rouleau/collision.hpp>
+#include <rouleau/dispatch.hpp>
+
+#include "core/domain/exact_sum.hpp"
+#include "energetics.hpp"
+#include "walls.hpp"
+
+namespace rouleau::core {
+
+namespace {
+
+/// Nodes of one span of a row, and what was found.
+template <class T, class Set>
+struct MassAndSpeedTask {
+  const T* in[Set::velocity_count];
+  const T* force[Set::dimension];  // per node, or null
+  T body_force[Set::dimension];
+  int count;
+  double mass[2];  // parts of an exact sum of the densities (ExactSum)
+  double speed_square, zero;
+};
+
+/// Sum of the densities, largest speed; `zero` becomes NaN with the first value that is not finite.
+template <class T, class Set>
+struct FindMassAndSpeed {
+  using Task = MassAndSpeedTask<T, Set>;
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(Task* task) {
+    constexpr int width = register_bytes / sizeof(T);
+    const Task t = *task;
+    const int whole = t.count / width * width;
+    sweep<Pack<T, width>>(t, 0, whole, *task);
+    sweep<Pack<T, 1>>(t, whole, t.count, *task);
+  }
+
+ private:
+  template <class S>
+  ROULEAU_ALWAYS_INLINE static void sweep(const Task& t, int begin, int end, Task& result) {
+    using Wide = typename Pack<double, S::size>::Vector;
+    Wide mass_high{}, mass_low{};
+    S fastest = 0, zero = 0;
+    for (int x = begin; x < end; x += S::size) {
+      Node<Set, S, true, false> node;
+      Set::for_each_velocity([&](auto q) { node.f[q] = S::load(t.in[q] + x); });
+      for (int k = 0; k < Set::dimension; ++k)
+        node.force[k] = t.force[k] != nullptr ? S::load(t.force[k] + x) : S(t.body_force[k]);
+      node.compute_moments();
+      const S square = node.dot(node.velocity, node.velocity);
+      const Wide density = __builtin_convertvector(node.density.vector, Wide);
+      const Wide part = ExactSum::high_part(density);
+      mass_high += part;
+      mass_low += ExactSum::low_part(Wide(density - part));
+      fastest = max(fastest, square);
+      zero += (square - square) + (node.density - node.density);
+    }
+    for (int k = 0; k < S::size; ++k) {
+      result.mass[0] += mass_high[k];
+      result.mass[1] += mass_low[k];
+      result.speed_square = std::max(result.speed_square, static_cast<double>(fastest.vector[k]));
+      result.zero += static_cast<double>(zero.vector[k]);
+    }
+  }
+};
+
+/// Of the rows that have been added, and of all ranks' rows.
+template <class T, class Set>
+class MassAndSpeed {
+ public:
+  void add(const FluidState<T, Set>& state, int i);
+  void add_up(const Ranks<Set::dimension>& ranks);
+  [[nodiscard]] double mass() const { return sum_.mass.value() + sum_.zero; }
+  [[nodiscard]] double speed() const { return std::sqrt(sum_.speed_square) + sum_.zero; }
+
+ private:
+  struct Part {
+    ExactSum mass;
+    double speed_square = 0, zero = 0;
+  };
+  Part sum_;
+};
+
+template <class T, class Set>
+void MassAndSpeed<T, Set>::add(const FluidState<T, Set>& state, int i) {
+  using Task = MassAndSpeedTask<T, Set>;
+  static const auto function = Dispatch<FindMassAndSpeed<T, Set>, Task*>::pick();
+  const T* in[Set::velocity_count];
+  const auto row = state.lattice.row(i);
+  state.lattice.row_pointers(state.parity, row, in);
+  state.mask.for_spans(i, [&](const MaskSpan& span) {
+    Task task{};
+    Set::for_each_velocity([&](auto q) { task.in[q] = in[q] + span.begin; });
+    for (int k = 0; k < Set::dimension; ++k) {
+      if (state.has_force(span)) task.force[k] = state.force[k].row(row) + span.begin;
+      task.body_force[k] = static_cast<T>(state.setting.body_force[k]);
+    }
+    task.count = span.end - span.begin;
+    function(&task);
+    sum_.mass.add_parts(task.mass[0], task.mass[1]);
+    sum_.speed_square = std::max(sum_.speed_square, task.speed_square);
+    sum_.zero += task.zero;
+  });
+}
+
+template <class T, class Set>
+void MassAndSpeed<T, Set>::add_up(const Ranks<Set::dimension>& ranks) {
+  Part all;
+  for (const std::vector<Part>& part : all_of(ranks, std::vector<Part>{sum_})) {
+    all.mass.add(part.front().mass);
+    all.speed_square = std::max(all.speed_square, part.front().speed_square);
+    all.zero += part.front().zero;
+  }
+  sum_ = all;
+}
+
+/// Sums of each row of the lattice.
+template <int D>
+class RowSums {
+ public:
+  explicit RowSums(const Domain<D>& domain)
+      : domain_(domain), sums_(static_cast<std::size_t>(domain.nodes() / domain.size[0])) {}
+  /// Of a row of the block.
+  [[nodiscard]] ExactSum& operator[](const std::array<int, D - 1>& row) {
+    std::size_t of_lattice = 0;
+    for (int k = D - 1; k > 0; --k)
+      of_lattice = of_lattice * static_cast<std::size_t>(domain_.size[k]) +
+                   static_cast<std::size_t>(domain_.block.begin[k] + row[k - 1]);
+    return sums_[of_lattice];
+  }
+  /// Of all ranks together: over the nodes of a row.
+  [[nodiscard]] std::vector<double> means(const Ranks<D>& ranks) {
+    add_up(ranks, sums_);
+    std::vector<double> means;
+    means.reserve(sums_.size());
+    for (const ExactSum& sum : sums_) means.push_back(sum.value() / domain_.size[0]);
+    return means;
+  }
+
+ private:
+  const Domain<D>& domain_;
+  std::vector<ExactSum> sums_;
+};
+
+}  // namespace
+
+template <class T, class Set>
+void copy_moments(const FluidState<T, Set>& state, int i, Moments<Set::dimension>* to) {
+  const T* in[Set::velocity_count];
+  const auto row = state.lattice.row(i);
+  state.lattice.row_pointers(state.parity, row, in);
+  std::fill_n(to, state.nx(), Moments<Set::dimension>{});
+  state.mask.for_spans(i, [&](const MaskSpan& span) {
+    for (int x = span.begin; x < span.end; ++x) {
+      Moments<Set::dimension>& m = to[x];
+      for (int q = 0; q < Set::velocity_count; ++q) {
+        const double f = static_cast<double>(in[q][x]);
+        m.density += f;
+        for (int k = 0; k < Set::dimension; ++k) m.velocity[k] += Set::velocity[q][k] * f;
+      }
+      const bool own_force = state.has_force(span);
+      for (int k = 0; k < Set::dimension; ++k)
+        m.velocity[k] +=
+            0.5 * (own_force ? static_cast<double>(state.force[k].row(row)[x]) : state.setting.body_force[k]);
+    }
+  });
+}
+
+template <class T, class Set>
+void copy_relaxation_rates(const FluidState<T, Set>& state, int i, double* to) {
+  const auto row = state.lattice.row(i);
+  std::fill_n(to, state.nx(), state.rate_of_row(row));
+  state.mask.for_spans(i, [&](const MaskSpan& span) {
+    if (!span.active || !state.setting.viscosity_contrast) return;
+    const T* const rates = state.relaxation_rate.row(row);
+    std::copy(rates + span.begin, rates + span.end, to + span.begin);
+  });
+}
+
+template <class T, class Set>
+void copy_population(const FluidState<T, Set>& state, int q, int i, double* to) {
+  const T* in[Set::velocity_count];
+  state.lattice.row_pointers(state.parity, state.lattice.row(i), in);
+  std::copy_n(in[q], state.nx(), to);
+  state.mask.for_solid(i, [&](int begin, int end) { std::fill(to + begin, to + end, 0.0); });
+}
+
+template <class T, class Set>
+FluidMeasures<Set::dimension> measure(const FluidState<T, Set>& state, const Ranks<Set::dimension>& ranks,
+                                      const FluidHalo<T, Set>* halo, const WallVelocity& walls, WantedMeasures wanted) {
+  MassAndSpeed<T, Set> fluid;
+  std::optional<EnergySum<T, Set>> energy;  // which finds velocities
+  if (wanted.energetics || wanted.row_velocities) energy.emplace(state, halo, walls);
+  std::optional<RowSums<Set::dimension>> rows;
+  if (wanted.row_velocities) rows.emplace(state.setting.domain);
+  for (int i = 0; i < state.lattice.rows(); ++i) {
+    fluid.add(state, i);
+    if (energy) energy->add(i);
+    if (rows) (*rows)[state.lattice.row(i)].add(energy->velocity_along_x(), static_cast<std::size_t>(state.nx()));
+  }
+  fluid.add_up(ranks);
+  FluidMeasures<Set::dimension> found{
+      .mass = fluid.mass(), .speed = fluid.speed(), .energetics = {}, .row_velocities = {}};
+  if (energy) found.energetics = energy->total(ranks);
+  if (rows) found.row_velocities = rows->means(ranks);
+  return found;
+}
+
+template <class T, class Set>
+std::vector<double> row_velocities_without_membranes(const FluidState<T, Set>& state,
+                                                     const Ranks<Set::dimension>& ranks) {
+  const double of_force = state.setting.body_force[0] / 2;
+  std::vector<double> momentum(static_cast<std::size_t>(state.nx()));
+  RowSums<Set::dimension> sums(state.setting.domain);
+  for (int i = 0; i < state.lattice.rows(); ++i) {
+    const auto row = state.lattice.row(i);
+    const T* in[Set::velocity_count];
+    state.lattice.row_pointers(state.parity, row, in);
+    std::fill(momentum.begin(), momentum.end(), 0.0);
+    Set::for_each_velocity([&](auto q) {
+      constexpr int along = Set::velocity[q][0];
+      if constexpr (along != 0) {
+        for (int x = 0; x < state.nx(); ++x) momentum[x] += along * static_cast<double>(in[q][x]);
+      }
+    });
+    ExactSum& sum = sums[row];
+    state.mask.for_fluid(i, [&](int begin, int end) {
+      for (int x = begin; x < end; ++x) sum.add(momentum[x] + (state.links ? of_force : 0));
+    });
+  }
+  std::vector<double> means = sums.means(ranks);
+  for (double& mean : means) mean += state.links ? 0 : of_force;
+  return means;
+}
+
+template <class T, class Set>
+WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ranks<Set::dimension>& ranks,
+                                       const WallVelocity& walls) {
+  using Sums = WallForceSums<Set::dimension>;
+  Sums sums;
+  // A population that leaves towards the wall and returns gives the wall c_q f_q - c_-q f_-q = c_q (f_q + f_-q); the
+  // one that left is the one that came back plus the wall's own momentum: f_q = f_-q + 6 w_q c_q . u_wall.
+  for (int i = 0; i < state.lattice.rows(); ++i) {
+    const auto row = state.lattice.row(i);
+    const T* in[Set::velocity_count];
+    state.lattice.row_pointers(state.parity, row, in);
+    const auto beyond = [&](int axis, int c) {
+      const int place = row[axis - 1] + c;
+      return (place < 0 && state.setting.domain.wall_below(axis)) ||
+             (place >= state.lattice.size(axis) && state.setting.domain.wall_above(axis));
+    };
+    const auto wall_of = [&](const auto& c) {
+      return !beyond(1, c[1]) ? Sums::other : c[1] < 0 ? Sums::lower : Sums::upper;
+    };
+    // What a plane in direction q gets, times `sign`.
+    const auto add_plane = [&](int q, int x, double sign) {
+      const auto& c = Set::velocity[q];
+      const typename Sums::Wall wall = wall_of(c);
+      const double speed = wall == Sums::other ? 0 : wall == Sums::lower ? walls.lower : walls.upper;
+      const double force = 2 * static_cast<double>(in[Set::opposite[q]][x]) + 6 * Set::weight[q] * c[0] * speed;
+      for (int k = 0; k < Set::dimension; ++k)
+        if (c[k] != 0) sums.add(wall, k, sign * c[k] * force);
+    };
+    for (int q = 1; q < Set::velocity_count; ++q) {
+      const auto& c = Set::velocity[q];
+      if (!beyond(1, c[1]) && !(Set::dimension == 3 && beyond(Set::dimension - 1, c[Set::dimension - 1]))) continue;
+      state.mask.for_fluid(i, [&](int begin, int end) {
+        for (int x = begin; x < end; ++x) add_plane(q, x, 1);
+      });
+    }
+    if (!state.links) continue;
+    state.links->for_links(i, [&](int x, int q, double left, bool plane) {
+      if (plane) add_plane(Set::opposite[q], x, -1);  // a wall before it takes all
+      for (int k = 0; k < Set::dimension; ++k) {
+        if (Set::velocity[q][k] != 0)
+          sums.add(Sums::other, k, -Set::velocity[q][k] * (left + static_cast<double>(in[q][x])));
+      }
+    });
+  }
+  return sums.total(ranks);
+}
+
+#define ROULEAU_INSTANTIATE(T, Set, D)                                                                       \
+  template void copy_moments(const FluidState<T, Set>&, int, Moments<D>*);                                   \
+  template void copy_relaxation_rates(const FluidState<T, Set>&, int, double*);                              \
+  template void copy_population(const FluidState<T, Set>&, int, int, double*);                               \
+  template FluidMeasures<D> measure(const FluidState<T, Set>&, const Ranks<D>&, const FluidHalo<T, Set>*,    \
+                                    const WallVelocity&, WantedMeasures);                                    \
+  template std::vector<double> row_velocities_without_membranes(const FluidState<T, Set>&, const Ranks<D>&); \
+  template WallForces<D> wall_forces(const FluidState<T, Set>&, const Ranks<D>&, const WallVelocity&);
+ROULEAU_INSTANTIATE(float, D2Q9, 2)
+ROULEAU_INSTANTIATE(double, D2Q9, 2)
+ROULEAU_INSTANTIATE(float, D3Q19, 3)
+ROULEAU_INSTANTIATE(double, D3Q19, 3)
+#undef ROULEAU_INSTANTIATE
+
+}  // namespace rouleau::core

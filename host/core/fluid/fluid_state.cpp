@@ -1,0 +1,152 @@
+#include "fluid_state.hpp"
+
+#include <algorithm>
+
+#include "layers.hpp"
+#include "periodic.hpp"
+
+namespace rouleau::core {
+
+template <class T, class Set>
+FluidState<T, Set>::FluidState(const FluidSetting<dimension>& of_fluid)
+    : setting(of_fluid), lattice(of_fluid.domain), mask(of_fluid.domain, of_fluid.solid.get()) {
+  std::array<int, dimension> size{};
+  for (int k = 0; k < dimension; ++k) size[k] = setting.domain.block.size(k);
+  if (setting.membranes) {
+    for (auto& component : force) component = Field<T, dimension>(size);
+  }
+  const bool layered = !setting.viscosity_of_rows.empty();
+  if (setting.viscosity_contrast || layered) {
+    relaxation_rate = Field<T, dimension>(size);
+    relaxation_rate.fill(static_cast<T>(setting.relaxation_rate));
+  }
+  for (int y = 0; layered && y < size[1]; ++y) {
+    const double ratio = setting.viscosity_of_rows.at(setting.domain.block.begin[1] + y);
+    rate_of_height.push_back(rate_of_layer(setting.relaxation_rate, ratio));
+  }
+  for (int i = 0; layered && i < lattice.rows(); ++i) {
+    const Row row = lattice.row(i);
+    std::fill_n(relaxation_rate.row(row), nx(), static_cast<T>(rate_of_row(row)));
+  }
+  if (setting.solid) links = std::make_unique<SolidLinks<T, Set>>(lattice, *setting.solid);
+}
+
+template <class T, class Set>
+std::size_t FluidState<T, Set>::bytes() const {
+  std::size_t sum = lattice.bytes() + relaxation_rate.bytes();
+  for (const auto& component : force) sum += component.bytes();
+  return sum;
+}
+
+template <class T, class Set>
+void FluidState<T, Set>::settle() {
+  for (int i = 0; parity == Parity::even && i < lattice.rows(); ++i) receive_row(lattice, lattice.row(i));
+  for (int i = 0; links && i < lattice.rows(); ++i) links->before_step(parity, i);
+}
+
+template <class T, class Set>
+double FluidState<T, Set>::equilibrium(int q, double density, const std::array<double, dimension>& u) const {
+  const auto dot = [](const auto& a, const auto& b) {
+    double sum = a[0] * b[0];
+    for (int k = 1; k < dimension; ++k) sum += a[k] * b[k];
+    return sum;
+  };
+  const auto& c = Set::velocity[q];
+  const auto quadratic = [&](const auto& a) { return 4.5 * dot(c, a) * dot(c, a) - 1.5 * dot(a, a); };
+  double terms = 0;
+  if (setting.inertia) {
+    terms = quadratic(u);
+  } else if (frame != std::array<double, dimension>{}) {
+    std::array<double, dimension> seen = u;
+    for (int k = 0; k < dimension; ++k) seen[k] -= frame[k];
+    terms = quadratic(u) - quadratic(seen);
+  }
+  return Set::weight[q] * (density + 3 * dot(c, u) + terms);
+}
+
+template <class T, class Set>
+void FluidState<T, Set>::set(const StateOfNode<dimension>& state) {
+  const auto& begin = setting.domain.block.begin;
+  for (int i = 0; i < lattice.rows(); ++i) {
+    const Row row = lattice.row(i);
+    const double tau = 1 / rate_of_row(row);
+    for (int x = 0; x < nx(); ++x) {
+      NodeState<dimension> s;
+      if constexpr (dimension == 2) {
+        s = state(begin[0] + x, begin[1] + row[0]);
+      } else {
+        s = state(begin[0] + x, begin[1] + row[0], begin[2] + row[1]);
+      }
+      // Populations hold the momentum without the half force that the velocity includes.
+      std::array<double, dimension> momentum;
+      for (int k = 0; k < dimension; ++k) momentum[k] = s.velocity[k] - 0.5 * setting.body_force[k];
+      for (int q = 0; q < velocity_count; ++q) {
+        const auto& c = Set::velocity[q];
+        double strain = 0, divergence = 0;
+        for (int k = 0; k < dimension; ++k) {
+          strain += static_cast<double>(c[k] * c[k]) * s.gradient[(dimension + 1) * k];
+          for (int l = k + 1; l < dimension; ++l)
+            strain +=
+                static_cast<double>(c[k] * c[l]) * (s.gradient[dimension * k + l] + s.gradient[dimension * l + k]);
+          divergence += s.gradient[(dimension + 1) * k];
+        }
+        strain -= divergence / 3;
+        lattice.slot(q, row)[x] =
+            static_cast<T>(equilibrium(q, s.density, momentum) - 3 * tau * Set::weight[q] * strain);
+      }
+    }
+  }
+  restart();
+}
+
+template <class T, class Set>
+void FluidState<T, Set>::take_over(const FluidState& other, double factor) {
+  std::array<double, dimension> half;  // that the velocity has of the forces, before and now
+  for (int k = 0; k < dimension; ++k) half[k] = (factor * other.setting.body_force[k] - setting.body_force[k]) / 2;
+  for (int i = 0; i < lattice.rows(); ++i) {
+    const Row row = lattice.row(i);
+    const T* in[velocity_count];
+    other.lattice.row_pointers(other.parity, row, in);
+    mask.for_fluid(i, [&](int begin, int end) {
+      for (int x = begin; x < end; ++x) {
+        double density = 0;
+        std::array<double, dimension> momentum{}, scaled;
+        for (int q = 0; q < velocity_count; ++q) {
+          const double f = static_cast<double>(in[q][x]);
+          density += f;
+          for (int k = 0; k < dimension; ++k) momentum[k] += Set::velocity[q][k] * f;
+        }
+        for (int k = 0; k < dimension; ++k) scaled[k] = factor * momentum[k] + half[k];
+        for (int q = 0; q < velocity_count; ++q) {
+          const double rest = static_cast<double>(in[q][x]) - other.equilibrium(q, density, momentum);
+          lattice.slot(q, row)[x] = static_cast<T>(equilibrium(q, factor * density, scaled) + factor * rest);
+        }
+      }
+    });
+  }
+  restart();
+}
+
+template <class T, class Set>
+void FluidState<T, Set>::restore(const std::function<std::vector<double>(int)>& populations) {
+  for (int q = 0; q < velocity_count; ++q) {
+    const std::vector<double> values = populations(q);
+    const double* from = values.data();
+    for (int i = 0; i < lattice.rows(); ++i, from += nx()) std::copy_n(from, nx(), lattice.slot(q, lattice.row(i)));
+  }
+  restart();
+}
+
+template <class T, class Set>
+void FluidState<T, Set>::restart() {
+  parity = Parity::even;
+  for (int i = 0; i < lattice.rows(); ++i) send_row(lattice, lattice.row(i));
+  if (links) links->restart();
+}
+
+template struct FluidState<float, D2Q9>;
+template struct FluidState<double, D2Q9>;
+template struct FluidState<float, D3Q19>;
+template struct FluidState<double, D3Q19>;
+
+}  // namespace rouleau::core
