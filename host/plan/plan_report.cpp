@@ -230,8 +230,8 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
     warnings.emplace_back(
         "numerics.slip_correction is false: in three dimensions plasma hardly drains from between cells then, so that "
         "they pass each other too far apart, suspensions are too viscous, and cells in contact stay together that "
-        "should part (docs/three-dimensions.md, \"Cells that pass each other\"); set it and numerics.area_correction to "
-        "true and numerics.kernel to \"sharp6\"");
+        "should part (docs/three-dimensions.md, \"Cells that pass each other\"); set it and numerics.area_correction "
+        "to true and numerics.kernel to \"sharp6\"");
   }
   for (const InteractionWell& well : wells) {
     const std::string named = well.model + " between " + well.between[0] + " and " + well.between[1] + ": ";
