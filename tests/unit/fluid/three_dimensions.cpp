@@ -8,6 +8,7 @@
 #include "core/domain/decomposition.hpp"
 #include "core/domain/transport.hpp"
 #include "core/fluid/flow_rate.hpp"
+#include "core/fluid/periodic.hpp"
 #include "flow_fixture.hpp"
 
 using namespace rouleau;
