@@ -146,8 +146,7 @@ class Vorticity {
 };
 
 /// Field::give of what `fill(row, known, to)` computes, so many numbers for each stored row, from the lattice's values
-/// that
-/// `gather(bands, take)` brings to the first rank: V of a node. `around`: rows need those beside them.
+/// that `gather(bands, take)` brings to the first rank: V of a node. `around`: rows need those beside them.
 template <class V, int D, class Gather, class Fill>
 auto giver(const StoredRows<D>& rows, bool around, std::size_t bytes, std::size_t numbers, Gather gather, Fill fill) {
   return [=](const Field::Take& take) mutable {

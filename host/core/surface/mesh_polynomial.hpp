@@ -26,8 +26,7 @@ struct PolynomialRoom {
 };
 
 /// The sum over k of coefficient[k] T_k(B) value, with Chebyshev's polynomials T_k, by Clenshaw's recurrence. It stays
-/// in
-/// `room` until that is used again. B is to have eigenvalues from -1 to 1.
+/// in `room` until that is used again. B is to have eigenvalues from -1 to 1.
 [[nodiscard]] const double* apply_polynomial(const NeighbourMatrix& matrix, std::span<const double> coefficients,
                                              PolynomialRoom& room);
 

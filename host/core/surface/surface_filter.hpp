@@ -29,8 +29,7 @@ double largest_eigenvalue(const KernelResponse& response, double stretching, dou
 class SurfaceFilter {
  public:
   /// `stretching`: k_s = d tension / d stretch along one direction, the other held; `bending`: k_b = d moment / d
-  /// curvature;
-  /// `viscosity`: kinematic, of the fluid around the cell. Lattice units.
+  /// curvature; `viscosity`: kinematic, of the fluid around the cell. Lattice units.
   SurfaceFilter(const RestSurface& rest, double viscosity, double stretching, double bending,
                 const KernelResponse& response = {});
 
