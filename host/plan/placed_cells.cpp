@@ -33,10 +33,10 @@ core::RestShape rest_shape(const scene::CellType& type, double spacing) {
 }
 
 core::RestSurface rest_surface(const scene::CellType& type, double spacing) {
-  shape::TriangleSurface surface = shape::make_surface(type);
+  core::TriangleSurface surface = shape::make_surface(type);
   for (core::Vec<3>& node : surface.nodes) node /= spacing;
   const auto* sphere = std::get_if<scene::Sphere>(&type.shape);
-  return shape::rest_surface(surface, sphere != nullptr ? sphere->prestretch : 1.0);
+  return core::rest_surface(surface, sphere != nullptr ? sphere->prestretch : 1.0);
 }
 
 void add_type(core::Membranes& cells, const scene::CellType& type, double spacing) {

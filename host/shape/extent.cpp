@@ -15,7 +15,7 @@ namespace {
 bool is_surface(const scene::CellType& type) { return type.segments == 0; }
 
 /// Of the cell at rest where it is stretched from the start: lengths as placed.
-core::RestSurface placed_surface(const scene::CellType& type) { return rest_surface(make_surface(type)); }
+core::RestSurface placed_surface(const scene::CellType& type) { return core::rest_surface(make_surface(type)); }
 
 }  // namespace
 
@@ -49,7 +49,7 @@ double node_spacing(const scene::CellType& type) {
 namespace {
 
 /// Half of the longest side of the box around a surface.
-double half_extent(const TriangleSurface& surface) {
+double half_extent(const core::TriangleSurface& surface) {
   Eigen::AlignedBox3d box;
   for (const core::Vec<3>& node : surface.nodes) box.extend(node);
   return box.sizes().maxCoeff() / 2;

@@ -13,7 +13,7 @@ namespace rouleau::shape {
 
 namespace {
 
-using Read = TriangleSurface (*)(Words&);
+using Read = core::TriangleSurface (*)(Words&);
 
 bool is_off(std::string_view word) {
   for (const std::string_view optional : {"ST", "C", "N", "4", "n"}) {
@@ -46,7 +46,7 @@ Read format_of(const std::string& text, const std::filesystem::path& file) {
 }
 
 /// What keeps it from being a closed surface; nothing if it is one.
-std::string fault_of(const TriangleSurface& surface) {
+std::string fault_of(const core::TriangleSurface& surface) {
   std::set<std::array<int, 3>> known;
   for (std::array<int, 3> triangle : surface.triangles) {
     std::sort(triangle.begin(), triangle.end());
@@ -56,7 +56,7 @@ std::string fault_of(const TriangleSurface& surface) {
            std::to_string(c) + ": a face is there twice; leave one of them out";
   }
   try {
-    static_cast<void>(rest_surface(surface));
+    static_cast<void>(core::rest_surface(surface));
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -65,14 +65,14 @@ std::string fault_of(const TriangleSurface& surface) {
 
 }  // namespace
 
-TriangleSurface read_mesh(const std::filesystem::path& file) {
+core::TriangleSurface read_mesh(const std::filesystem::path& file) {
   std::string text = read_input(file, largest_input);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   const bool old_ends = text.find('\n') == std::string::npos && text.find('\0') == std::string::npos;  // of lines
   if (old_ends) std::replace(text.begin(), text.end(), '\r', '\n');
   const Read read = format_of(text, file);
   Words words(std::move(text), file.string());
-  TriangleSurface surface = read(words);
+  core::TriangleSurface surface = read(words);
   const auto refuse = [&](const std::string& problem) {
     throw Error(Cause::bad_input, rouleau::Place{file.string()}, problem);
   };

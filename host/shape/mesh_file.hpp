@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "triangle_surface.hpp"
+#include "core/surface/triangle_surface.hpp"
 
 namespace rouleau::shape {
 
@@ -16,6 +16,6 @@ inline constexpr double weld_distance = 1e-5;
 /// corners at the same place are one node; the name's end tells OBJ that begins with something else. A mesh that is not
 /// closed is welded (`weld_distance`). Throws what InputFile does, and Error(bad_input), with the line where one is to
 /// blame, for what is no surface of finite size that is closed, in one piece and without seams (core::Mesh).
-TriangleSurface read_mesh(const std::filesystem::path& file);
+core::TriangleSurface read_mesh(const std::filesystem::path& file);
 
 }  // namespace rouleau::shape

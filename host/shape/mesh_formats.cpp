@@ -22,14 +22,14 @@ core::Vec<3> read_place(Words& words) {
 
 }  // namespace
 
-void add_face(TriangleSurface& surface, const std::vector<int>& corners, const Words& words) {
+void add_face(core::TriangleSurface& surface, const std::vector<int>& corners, const Words& words) {
   if (corners.size() < 3) words.refuse("a face has " + std::to_string(corners.size()) + " corners");
   for (std::size_t k = 2; k < corners.size(); ++k)
     surface.triangles.push_back({corners[0], corners[k - 1], corners[k]});
 }
 
-TriangleSurface read_off(Words& words) {
-  TriangleSurface surface;
+core::TriangleSurface read_off(Words& words) {
+  core::TriangleSurface surface;
   const std::string_view keyword = words.next();
   const bool more = keyword != "OFF";  // texture coordinates, colours, normals behind each place: ST, C, N
   if (keyword.find('4') != keyword.npos || keyword.find('n') != keyword.npos)
@@ -49,9 +49,9 @@ TriangleSurface read_off(Words& words) {
   return surface;
 }
 
-TriangleSurface read_obj(Words& words) {
+core::TriangleSurface read_obj(Words& words) {
   words.join_lines();
-  TriangleSurface surface;
+  core::TriangleSurface surface;
   for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
     if (word == "v") surface.nodes.push_back(read_place(words));
     const std::vector<std::string_view> rest = words.rest();  // of other lines: names, normals, colours
@@ -72,8 +72,8 @@ TriangleSurface read_obj(Words& words) {
   return surface;
 }
 
-TriangleSurface read_stl_text(Words& words) {
-  TriangleSurface surface;
+core::TriangleSurface read_stl_text(Words& words) {
+  core::TriangleSurface surface;
   std::vector<int> face;
   for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
     if (is_keyword(word, "solid") || is_keyword(word, "endsolid")) {
@@ -89,9 +89,9 @@ TriangleSurface read_stl_text(Words& words) {
   return surface;
 }
 
-TriangleSurface read_stl_binary(Words& words) {
+core::TriangleSurface read_stl_binary(Words& words) {
   static_assert(std::endian::native == std::endian::little);
-  TriangleSurface surface;
+  core::TriangleSurface surface;
   words.bytes(80, "its header");
   std::uint32_t faces = 0;
   std::memcpy(&faces, words.bytes(4, "the number of faces").data(), sizeof faces);

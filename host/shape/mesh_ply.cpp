@@ -157,10 +157,10 @@ std::vector<int> read_list(Words& words, Form form, const Property& property) {
 
 }  // namespace
 
-TriangleSurface read_ply(Words& words) {
+core::TriangleSurface read_ply(Words& words) {
   const Header header = read_header(words);
   check_header(header, words);
-  TriangleSurface surface;
+  core::TriangleSurface surface;
   for (const Element& element : header.elements) {
     for (std::size_t i = 0; i < element.count; ++i) {
       core::Vec<3> place = core::Vec<3>::Constant(std::nan(""));

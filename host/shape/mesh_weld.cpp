@@ -7,7 +7,7 @@
 
 namespace rouleau::shape {
 
-int weld(TriangleSurface& surface, double distance) {
+int weld(core::TriangleSurface& surface, double distance) {
   const int count = static_cast<int>(surface.nodes.size());
   const auto is_known = [&](int node) { return node >= 0 && node < count; };
   if (!std::all_of(surface.triangles.begin(), surface.triangles.end(),

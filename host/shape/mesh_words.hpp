@@ -10,7 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "triangle_surface.hpp"
+#include "core/surface/triangle_surface.hpp"
 
 namespace rouleau::shape {
 
@@ -108,14 +108,14 @@ class Words {
 };
 
 /// Cut into triangles.
-void add_face(TriangleSurface& surface, const std::vector<int>& corners, const Words& words);
+void add_face(core::TriangleSurface& surface, const std::vector<int>& corners, const Words& words);
 
 // What the file says, whether it is closed or not. Every corner of STL is a node of its own. They throw
 // Error(bad_input).
-TriangleSurface read_off(Words& words);
-TriangleSurface read_obj(Words& words);
-TriangleSurface read_ply(Words& words);
-TriangleSurface read_stl_text(Words& words);
-TriangleSurface read_stl_binary(Words& words);
+core::TriangleSurface read_off(Words& words);
+core::TriangleSurface read_obj(Words& words);
+core::TriangleSurface read_ply(Words& words);
+core::TriangleSurface read_stl_text(Words& words);
+core::TriangleSurface read_stl_binary(Words& words);
 
 }  // namespace rouleau::shape

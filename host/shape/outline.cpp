@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/surface/triangle_surface.hpp"
+
 namespace rouleau::shape {
 
 namespace {
@@ -14,30 +16,22 @@ constexpr double full_turn = 2 * std::numbers::pi;
 
 /// A closed curve by an angle in [0, 2 pi), counter-clockwise from the positive x axis, and its derivative.
 struct Curve {
-  struct Point {
-    Eigen::Vector2d place, derivative;
-  };
-  Point (*at)(const scene::Shape&, double angle);
+  core::CurvePoint (*at)(const scene::Shape&, double angle);
   const scene::Shape& shape;
-  Point operator()(double angle) const { return at(shape, angle); }
+  core::CurvePoint operator()(double angle) const { return at(shape, angle); }
 };
 
-/// x = R cos(a), y = R/2 sin(a) (0.207 + 2.002 (x/R)^2 - 1.122 (x/R)^4): smooth at the rim, where y(x) is not.
-Curve::Point biconcave(const scene::Shape& shape, double angle) {
-  const double radius = std::get<scene::Biconcave>(shape).radius;
-  const double c = std::cos(angle), s = std::sin(angle), c2 = c * c;
-  const double thickness = 0.207 + c2 * (2.002 - 1.122 * c2);
-  const double change = c * (2 * 2.002 - 4 * 1.122 * c2);  // d thickness / d c
-  return {{radius * c, 0.5 * radius * s * thickness}, {-radius * s, 0.5 * radius * (c * thickness - s * s * change)}};
+core::CurvePoint biconcave(const scene::Shape& shape, double angle) {
+  return core::biconcave_curve(std::get<scene::Biconcave>(shape).radius, angle);
 }
 
-Curve::Point circle(const scene::Shape& shape, double angle) {
+core::CurvePoint circle(const scene::Shape& shape, double angle) {
   const double radius = std::get<scene::Circle>(shape).radius;
   const double c = std::cos(angle), s = std::sin(angle);
   return {{radius * c, radius * s}, {-radius * s, radius * c}};
 }
 
-Curve::Point ellipse(const scene::Shape& shape, double angle) {
+core::CurvePoint ellipse(const scene::Shape& shape, double angle) {
   const scene::Vector axes = std::get<scene::Ellipse>(shape).semi_axes;
   const double c = std::cos(angle), s = std::sin(angle);
   return {{axes.x() * c, axes.y() * s}, {-axes.x() * s, axes.y() * c}};
@@ -58,12 +52,12 @@ double smallest_size(const scene::Shape& shape) {
 /// turn.
 double step(const Curve& curve, double angle, double chord, double stride) {
   const Eigen::Vector2d start = curve(angle).place;
-  const auto distance = [&](const Curve::Point& point) { return (point.place - start).norm(); };
+  const auto distance = [&](const core::CurvePoint& point) { return (point.place - start).norm(); };
   double low = angle, high = angle + stride;
   while (distance(curve(high)) < chord && high < angle + full_turn) low = std::exchange(high, high + stride);
   double next = 0.5 * (low + high);
   for (int iteration = 0; iteration < 60; ++iteration) {
-    const Curve::Point point = curve(next);
+    const core::CurvePoint point = curve(next);
     const double length = distance(point), slope = (point.place - start).dot(point.derivative) / length;
     (length < chord ? low : high) = next;
     double newton = next - (length - chord) / slope;
@@ -82,8 +76,6 @@ void march(const Curve& curve, double chord, std::vector<double>& angles) {
 }
 
 }  // namespace
-
-Eigen::Vector2d biconcave_place(double angle) { return biconcave(scene::Biconcave{1}, angle).place; }
 
 Outline make_outline(const scene::Shape& shape, int segments) {
   if (segments < 3) throw std::invalid_argument("an outline needs at least 3 segments");

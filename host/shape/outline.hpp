@@ -18,9 +18,6 @@ struct Outline {
 /// Throws std::invalid_argument for fewer than 3 segments or a size that is not positive.
 Outline make_outline(const scene::Shape& shape, int segments);
 
-/// Place on the biconcave outline of radius 1 at an angle, 0 on the positive x axis, pi/2 on its axis of symmetry.
-Eigen::Vector2d biconcave_place(double angle);
-
 /// Length of the membrane as placed, m, of a shape of two dimensions: exact for circles, to 1e-5 for others
 /// (Ramanujan's formula for ellipses).
 double shape_perimeter(const scene::Shape& shape);

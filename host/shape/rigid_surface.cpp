@@ -99,7 +99,7 @@ Place<3> rotated(const RigidSurface::Orientation& orientation, const Place<3>& p
 }
 
 RigidSurface::RigidSurface(const scene::CellType& type, double unit, double gap) {
-  const TriangleSurface surface = make_surface(type);
+  const core::TriangleSurface surface = make_surface(type);
   triangles_ = surface.triangles;
   for (const core::Vec<3>& node : surface.nodes) {
     nodes_.push_back({rounded(node.x() / unit), rounded(node.y() / unit), rounded(node.z() / unit)});

@@ -1,113 +1,13 @@
 #include "surface.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
-#include <map>
-#include <numbers>
 
 #include "mesh_file.hpp"
-#include "outline.hpp"
 
 namespace rouleau::shape {
 
-namespace {
-
-using core::Vec;
-
-struct Icosahedron {
-  std::array<Vec<3>, 12> corner;
-  std::array<std::array<int, 3>, 20> face;
-};
-
-Icosahedron icosahedron() {
-  constexpr double g = std::numbers::phi;
-  Icosahedron solid{{{{-1, g, 0},
-                      {1, g, 0},
-                      {-1, -g, 0},
-                      {1, -g, 0},
-                      {0, -1, g},
-                      {0, 1, g},
-                      {0, -1, -g},
-                      {0, 1, -g},
-                      {g, 0, -1},
-                      {g, 0, 1},
-                      {-g, 0, -1},
-                      {-g, 0, 1}}},
-                    {{{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}}};
-  for (Vec<3>& corner : solid.corner) corner.normalize();
-  return solid;
-}
-
-}  // namespace
-
-TriangleSurface unit_sphere(int n) {
-  static const Icosahedron solid = icosahedron();
-  const double step = std::acos(solid.corner[0].dot(solid.corner[1])) / n;
-  TriangleSurface sphere;
-  std::map<std::array<std::pair<int, int>, 3>, int> known;  // nodes of faces that meet, by corners and their shares
-  const auto node = [&](const std::array<int, 3>& face, const std::array<int, 3>& shares) {
-    std::array<std::pair<int, int>, 3> key;
-    for (int k = 0; k < 3; ++k) key[k] = shares[k] == 0 ? std::pair{-1, 0} : std::pair{face[k], shares[k]};
-    std::sort(key.begin(), key.end());
-    const auto [found, is_new] = known.try_emplace(key, static_cast<int>(sphere.nodes.size()));
-    if (is_new) {
-      // On an edge this divides the arc evenly, and all three corners of a face are alike.
-      Vec<3> place = Vec<3>::Zero();
-      for (const auto& [corner, share] : key) {
-        if (share > 0) place += std::sin(share * step) * solid.corner[corner];
-      }
-      sphere.nodes.push_back(place.normalized());
-    }
-    return found->second;
-  };
-  for (const auto& face : solid.face) {
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; i + j < n; ++j) {
-        const int rest = n - i - j;
-        const auto at = [&](int a, int b) { return node(face, {rest - a - b, i + a, j + b}); };
-        sphere.triangles.push_back({at(0, 0), at(1, 0), at(0, 1)});
-        if (rest > 1) sphere.triangles.push_back({at(1, 0), at(1, 1), at(0, 1)});
-      }
-    }
-  }
-  return sphere;
-}
-
-TriangleSurface ellipsoid(int n, const Vec<3>& semi_axes) {
-  TriangleSurface made = unit_sphere(n);
-  for (Vec<3>& node : made.nodes) node = node.cwiseProduct(semi_axes);
-  return made;
-}
-
-TriangleSurface biconcave_disc(int n, double radius) {
-  constexpr int steps = 4096;
-  // Length along the profile from the axis, at equal steps of the parameter from 0 to pi.
-  std::vector<double> length(steps + 1);
-  const auto point = [](double from_pole) -> std::pair<double, double> {
-    const Eigen::Vector2d place = biconcave_place(std::numbers::pi / 2 - from_pole);
-    return {place.x(), place.y()};
-  };
-  for (int k = 1; k <= steps; ++k) {
-    const auto [x0, y0] = point(std::numbers::pi * (k - 1) / steps);
-    const auto [x1, y1] = point(std::numbers::pi * k / steps);
-    length[k] = length[k - 1] + std::hypot(x1 - x0, y1 - y0);
-  }
-  TriangleSurface made = unit_sphere(n);
-  for (Vec<3>& node : made.nodes) {
-    const double from_axis = std::hypot(node.x(), node.z());
-    const double wanted = std::atan2(from_axis, node.y()) / std::numbers::pi * length[steps];
-    const auto above =
-        std::clamp<std::ptrdiff_t>(std::upper_bound(length.begin(), length.end(), wanted) - length.begin(), 1, steps);
-    const double share = (wanted - length[above - 1]) / (length[above] - length[above - 1]);
-    const auto [r, y] = point(std::numbers::pi * (static_cast<double>(above - 1) + share) / steps);
-    const double scale = from_axis > 0 ? r / from_axis : 0;
-    node = radius * Vec<3>(scale * node.x(), y, scale * node.z());
-  }
-  return made;
-}
+using core::TriangleSurface, core::Vec;
 
 TriangleSurface mesh_surface(const scene::MeshFile& mesh) {
   TriangleSurface made = read_mesh(mesh.file);
@@ -128,9 +28,10 @@ TriangleSurface mesh_surface(const scene::MeshFile& mesh) {
 TriangleSurface make_surface(const scene::CellType& type) {
   if (const auto* mesh = std::get_if<scene::MeshFile>(&type.shape)) return mesh_surface(*mesh);
   const int n = static_cast<int>(std::lround(std::sqrt(type.triangles / 20.0)));
-  if (const auto* disc = std::get_if<scene::Biconcave>(&type.shape)) return biconcave_disc(n, disc->radius);
-  if (const auto* solid = std::get_if<scene::Ellipsoid>(&type.shape)) return ellipsoid(n, solid->semi_axes.in<3>());
-  return ellipsoid(n, Vec<3>::Constant(std::get<scene::Sphere>(type.shape).radius));
+  if (const auto* disc = std::get_if<scene::Biconcave>(&type.shape)) return core::biconcave_disc(n, disc->radius);
+  if (const auto* solid = std::get_if<scene::Ellipsoid>(&type.shape))
+    return core::ellipsoid(n, solid->semi_axes.in<3>());
+  return core::ellipsoid(n, Vec<3>::Constant(std::get<scene::Sphere>(type.shape).radius));
 }
 
 Eigen::Matrix3d rotation_of(const scene::CellPlacement& cell) {

@@ -25,7 +25,7 @@ struct MorseWell {
 class Doublet {
  public:
   /// Two cells of a shape, side by side along y and bent into an S by a share of their radius.
-  Doublet(const shape::TriangleSurface& shape, MembraneLaws laws, MorseWell well, double bent)
+  Doublet(const core::TriangleSurface& shape, MembraneLaws laws, MorseWell well, double bent)
       : well_(well), cells_(side_by_side(shape, well, bent)), membranes_(cells_, {std::move(laws)}) {}
 
   /// Goes downhill, `depth` being the energy per area of the contact, by steps that move no node farther than `longest`
@@ -83,9 +83,9 @@ class Doublet {
  private:
   static constexpr int box = 100;
 
-  static Surfaces side_by_side(const shape::TriangleSurface& shape, MorseWell well, double bent) {
+  static Surfaces side_by_side(const core::TriangleSurface& shape, MorseWell well, double bent) {
     Surfaces cells;
-    cells.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape)));
+    cells.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(shape)));
     const RestSurface& rest = *cells.types[0];
     const double top = *std::max_element(rest.y.begin(), rest.y.end()),
                  radius = *std::max_element(rest.x.begin(), rest.x.end());
@@ -129,11 +129,11 @@ class Vesicles {
   }
 
  private:
-  Vesicles(const shape::TriangleSurface& shape, double volume, double range)
-      : doublet_(shape, laws(shape::rest_surface(shape).rest_volume, volume), {2 * range, range, 14 * range}, 0.05) {}
-  static shape::TriangleSurface disc(int n) {
-    shape::TriangleSurface disc = shape::biconcave_disc(n, 1);
-    const double scale = size * std::sqrt(4 * std::numbers::pi / shape::rest_surface(disc).rest_surface_area);
+  Vesicles(const core::TriangleSurface& shape, double volume, double range)
+      : doublet_(shape, laws(core::rest_surface(shape).rest_volume, volume), {2 * range, range, 14 * range}, 0.05) {}
+  static core::TriangleSurface disc(int n) {
+    core::TriangleSurface disc = core::biconcave_disc(n, 1);
+    const double scale = size * std::sqrt(4 * std::numbers::pi / core::rest_surface(disc).rest_surface_area);
     for (Vec<3>& node : disc.nodes) node *= scale;
     return disc;
   }
@@ -226,7 +226,7 @@ TEST_CASE("contacts of red cells over depth", "[.doublet_scan]") {
   // those.
   const MembraneLaws laws = {surface_law("skalak", {5, 10, 0}), surface_law("bending", {0.36, 0, 0}),
                              surface_law("volume", {1e4, 1})};
-  const shape::TriangleSurface shape = shape::biconcave_disc(12, 3.91);
+  const core::TriangleSurface shape = core::biconcave_disc(12, 3.91);
   constexpr MorseWell well{0.49, 1 / 3.84, 1.5};
   const auto relax = [](Doublet& cells, double depth, const std::string& begun) {
     cells.relax(depth, 4000, 0.05);

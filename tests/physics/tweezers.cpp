@@ -50,7 +50,7 @@ MembraneLaws neo_hookean_cell(double modulus) {
 class PulledCell {
  public:
   PulledCell(int n, const MembraneLaws& laws)
-      : cell_(one_cell(shape::biconcave_disc(n, radius))), forces_(cell_, {laws}) {
+      : cell_(one_cell(core::biconcave_disc(n, radius))), forces_(cell_, {laws}) {
     for (const int side : {-1, 1}) beads_.push_back({side, nodes_around({side * radius, 0, 0})});
   }
 

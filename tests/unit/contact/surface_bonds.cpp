@@ -8,7 +8,7 @@
 
 #include "core/contact/interactions.hpp"
 #include "core/contact/wall_contacts.hpp"
-#include "shape/surface.hpp"
+#include "core/surface/triangle_surface.hpp"
 #include "unit/cell_fixture.hpp"
 #include "unit/fake_models.hpp"
 
@@ -36,7 +36,7 @@ double bonds_after(int steps, double distance) {
 /// Spheres of radius 4.
 Surfaces spheres(const std::vector<Vec<3>>& centers) {
   Surfaces s;
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(6, {4, 4, 4}))));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::ellipsoid(6, {4, 4, 4}))));
   double angle = 0.3;
   for (const Vec<3>& center : centers) {
     add_cell(s, 0, center, Eigen::AngleAxisd(angle, Vec<3>(3, 1, 2).normalized()).toRotationMatrix());

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "shape/surface.hpp"
+#include "core/surface/triangle_surface.hpp"
 #include "surface_fixture.hpp"
 #include "unit/fake_models.hpp"
 #include "unit/random.hpp"
@@ -20,13 +20,13 @@ namespace {
 
 const Domain<3> domain{{40, 40, 40}, {true, true, true}};
 
-Surfaces of_shape(const shape::TriangleSurface& mesh) {
+Surfaces of_shape(const core::TriangleSurface& mesh) {
   Surfaces s;
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(mesh)));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(mesh)));
   add_cell(s, 0, {20, 20, 20});
   return s;
 }
-Surfaces sphere(double radius, int n) { return of_shape(shape::ellipsoid(n, Vec<3>::Constant(radius))); }
+Surfaces sphere(double radius, int n) { return of_shape(core::ellipsoid(n, Vec<3>::Constant(radius))); }
 
 Interactions<3> within(Surfaces& s, double stiffness, double rest, double cutoff) {
   return {s, {}, domain, {{0, test::spring_potential(stiffness, rest, cutoff)}}};
@@ -73,7 +73,7 @@ TEST_CASE(
   const unsigned seed = GENERATE(31u, 32u);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> any(-1, 1);
-  Surfaces s = of_shape(shape::biconcave_disc(8, 6));
+  Surfaces s = of_shape(core::biconcave_disc(8, 6));
   s.largest_step.assign(1, 0.0);
   const double cutoff = 2.5;
   TriangleContacts contacts(s, Cutoffs(1), domain, {cutoff}), shared(s, Cutoffs(1), domain, {cutoff});
@@ -124,7 +124,7 @@ TEST_CASE(
     "forces within a surface are minus the gradient of their energy, without net force or torque, for any workers") {
   std::mt19937 random(22);
   std::uniform_real_distribution<double> any(-1, 1);
-  Surfaces s = of_shape(shape::biconcave_disc(6, 5));
+  Surfaces s = of_shape(core::biconcave_disc(6, 5));
   for (auto& places : s.position) {
     for (double& place : places) place += 0.05 * any(random);
   }
@@ -181,7 +181,7 @@ TEST_CASE("faces that are nearly flat push each other by their area times the po
 }
 
 TEST_CASE("a potential within surfaces acts on its type alone, beside others between cells, which do not act within") {
-  Surfaces s = of_shape(shape::biconcave_disc(6, 5));
+  Surfaces s = of_shape(core::biconcave_disc(6, 5));
   s.types.push_back(s.types.front());
   add_cell(s, 1, {20, 24, 20});
   Surfaces within_alone = s, between_alone = s;

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/contact/wall_contacts.hpp"
-#include "shape/surface.hpp"
+#include "core/surface/triangle_surface.hpp"
 #include "unit/fake_models.hpp"
 
 using namespace rouleau;
@@ -20,7 +20,7 @@ const Domain<3> domain{{24, 20, 22}, {true, false, false}};
 Surfaces sphere(int n, double radius, const Vec<3>& center) {
   Surfaces s;
   s.types.push_back(
-      std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(n, Vec<3>::Constant(radius)))));
+      std::make_shared<const RestSurface>(core::rest_surface(core::ellipsoid(n, Vec<3>::Constant(radius)))));
   add_cell(s, 0, center, Eigen::AngleAxisd(0.4, Vec<3>(3, 1, 2).normalized()).toRotationMatrix());
   return s;
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "shape/surface.hpp"
+#include "core/surface/triangle_surface.hpp"
 #include "surface_fixture.hpp"
 #include "unit/fake_models.hpp"
 #include "unit/random.hpp"
@@ -27,8 +27,8 @@ const Domain<3> domain{box, {true, false, true}};
 Surfaces pair(std::mt19937& random, double apart = 1.2) {
   std::uniform_real_distribution<double> any(-1, 1);
   Surfaces s;
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(5, {3, 3, 3}))));
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::biconcave_disc(6, 4))));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::ellipsoid(5, {3, 3, 3}))));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::biconcave_disc(6, 4))));
   const Vec<3> center(any(random), 10, any(random) + 21),
       towards = Vec<3>(any(random), any(random), any(random)).normalized();
   add_cell(s, 0, center);
@@ -143,7 +143,7 @@ TEST_CASE("contacts of surfaces are the closest of all triangles, while cells mo
 
 TEST_CASE("in a box narrower than the cutoff all images of a surface count") {
   Surfaces s;
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(3, {1.5, 1.5, 1.5}))));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::ellipsoid(3, {1.5, 1.5, 1.5}))));
   add_cell(s, 0, {10, 12, 3});
   add_cell(s, 0, {14, 12, 4});
   const Domain<3> narrow{{24, 24, 8}, {true, true, true}};
@@ -232,7 +232,7 @@ TEST_CASE("spheres around the same centre have the energy of their areas at the 
     Surfaces s;
     for (const double radius : {6.0, 7.5})
       s.types.push_back(
-          std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(n, Vec<3>::Constant(radius)))));
+          std::make_shared<const RestSurface>(core::rest_surface(core::ellipsoid(n, Vec<3>::Constant(radius)))));
     add_cell(s, 0, {12, 10, 11});
     add_cell(s, 1, {12, 10, 11}, Eigen::AngleAxisd(0.3, Vec<3>(1, 2, 3).normalized()).toRotationMatrix());
     Interactions<3> forces(s, {{{0, 1}, test::spring_potential(0.5, 1.0, 4)}},

@@ -5,7 +5,7 @@
 
 #include "core/coupling/coupling.hpp"
 #include "core/fluid/periodic.hpp"
-#include "shape/surface.hpp"
+#include "core/surface/triangle_surface.hpp"
 #include "unit/random.hpp"
 
 using namespace rouleau;
@@ -25,7 +25,7 @@ VectorField<T, 3> field() {
 /// A sphere of radius 3 and 92 nodes, whose forces are random.
 Surfaces sphere_at(const Vec<3>& center, std::mt19937& random) {
   Surfaces s;
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(3, {3, 3, 3}))));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::ellipsoid(3, {3, 3, 3}))));
   add_cell(s, 0, center);
   std::uniform_real_distribution<double> any(-1, 1);
   for (int i = 0; i < s.node_count(); ++i)

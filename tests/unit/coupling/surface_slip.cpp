@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "shape/surface.hpp"
+#include "core/surface/triangle_surface.hpp"
 #include "unit/random.hpp"
 
 using namespace rouleau;
@@ -20,7 +20,7 @@ namespace {
 Surfaces uneven_sphere(std::mt19937& random) {
   std::uniform_real_distribution<double> any(-1, 1);
   Surfaces s;
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(4, {5, 5, 5}))));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::ellipsoid(4, {5, 5, 5}))));
   add_cell(s, 0, {9, 8, 7});
   for (auto& values : s.position) {
     for (double& value : values) value += 0.1 * any(random);

@@ -7,7 +7,7 @@
 #include "core/coupling/viscosity_field.hpp"
 #include "core/fluid/layers.hpp"
 #include "core/fluid/relaxation.hpp"
-#include "shape/surface.hpp"
+#include "core/surface/triangle_surface.hpp"
 #include "unit/random.hpp"
 
 using namespace rouleau;
@@ -17,7 +17,7 @@ namespace {
 
 Surfaces ellipsoid_at(const Vec<3>& center, int n = 16) {
   Surfaces s;
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(n, {6, 5, 3}))));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::ellipsoid(n, {6, 5, 3}))));
   add_cell(s, 0, center, Eigen::AngleAxisd(0.7, Vec<3>(1, 2, 3).normalized()).toRotationMatrix());
   return s;
 }
@@ -84,10 +84,10 @@ TEST_CASE("a surface whose edges and nodes lie on lines through the lattice is c
   // An octahedron that is centred on a line: every line through a node or an edge counts once.
   Surfaces s;
   const auto octahedron = [] {
-    shape::TriangleSurface made;
+    core::TriangleSurface made;
     made.nodes = {{4, 0, 0}, {-4, 0, 0}, {0, 4, 0}, {0, -4, 0}, {0, 0, 4}, {0, 0, -4}};
     made.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-    return shape::rest_surface(made);
+    return core::rest_surface(made);
   };
   s.types.push_back(std::make_shared<const RestSurface>(octahedron()));
   add_cell(s, 0, {0, 0.25, 0.25});

@@ -2,14 +2,14 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "core/surface/triangle_surface.hpp"
 #include "files/middle_sections.hpp"
-#include "shape/surface.hpp"
 
 using namespace rouleau;
 
 namespace {
 
-void add(observe::OutlineSnapshot& s, const shape::TriangleSurface& surface, const core::Vec<3>& at) {
+void add(observe::OutlineSnapshot& s, const core::TriangleSurface& surface, const core::Vec<3>& at) {
   if (s.first.empty()) s.first.push_back(0);
   const int before = s.first.back();
   for (const core::Vec<3>& node : surface.nodes) {
@@ -26,8 +26,8 @@ void add(observe::OutlineSnapshot& s, const shape::TriangleSurface& surface, con
 
 TEST_CASE("surfaces are cut through their middles into outlines of equal pieces") {
   observe::OutlineSnapshot surfaces;
-  add(surfaces, shape::ellipsoid(12, {3, 2, 1}), {5, 7, 40});
-  add(surfaces, shape::biconcave_disc(12, 4), {-3, 0, 1});
+  add(surfaces, core::ellipsoid(12, {3, 2, 1}), {5, 7, 40});
+  add(surfaces, core::biconcave_disc(12, 4), {-3, 0, 1});
   const observe::OutlineSnapshot sections = files::middle_sections(surfaces, 100);
   REQUIRE(sections.first == std::vector<int>{0, 100, 200});
   REQUIRE(sections.x.size() == 200);
@@ -56,7 +56,7 @@ TEST_CASE("surfaces are cut through their middles into outlines of equal pieces"
 
 TEST_CASE("a surface whose nodes are no numbers has an outline all the same") {
   observe::OutlineSnapshot surfaces;
-  add(surfaces, shape::ellipsoid(3, {1, 1, 1}), {0, 0, 0});
+  add(surfaces, core::ellipsoid(3, {1, 1, 1}), {0, 0, 0});
   for (double& z : surfaces.z) z = std::nan("");
   CHECK(files::middle_sections(surfaces, 16).x.size() == 16);
 }

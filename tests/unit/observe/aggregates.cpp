@@ -10,8 +10,8 @@
 #include "core/contact/surface_crossing.hpp"
 #include "core/contact/triangle_contacts.hpp"
 #include "core/membrane/geometry.hpp"
+#include "core/surface/triangle_surface.hpp"
 #include "scene/output_schedule.hpp"
-#include "shape/surface.hpp"
 #include "unit/periodic_box.hpp"
 
 using namespace rouleau;
@@ -130,8 +130,8 @@ namespace {
 /// Discs, spheres among them, at random places and turns; some touch or overlap.
 Surfaces crowd(int count, const Domain<3>& domain, std::mt19937& random) {
   Surfaces s;
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::biconcave_disc(5, 3))));
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(3, {2, 2, 2}))));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::biconcave_disc(5, 3))));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::ellipsoid(3, {2, 2, 2}))));
   std::uniform_real_distribution<double> any(-0.5, 1.5);
   for (int cell = 0; cell < count; ++cell) {
     const Vec<3> center(any(random) * domain.size[0], any(random) * domain.size[1], any(random) * domain.size[2]);
@@ -171,7 +171,7 @@ TEST_CASE("the deepest node inside another surface is found, over a border too, 
   const Domain<3> domain({30, 30, 30}, {true, true, true});
   for (const double depth : {0.7, 1.6, -0.3}) {
     Surfaces s;
-    s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(8, {4, 4, 4}))));
+    s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::ellipsoid(8, {4, 4, 4}))));
     for (const double x : {2.0, 15.0, 24 + depth}) add_cell(s, 0, {x, 10, 10});  // the last and the first, over x
     const auto found = find_crossing(s, domain);
     REQUIRE(found.has_value() == depth > 0);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "shape/surface.hpp"
+#include "core/surface/triangle_surface.hpp"
 
 using namespace rouleau;
 using namespace rouleau::core;
@@ -31,7 +31,7 @@ Membranes polygons(const std::vector<std::vector<std::array<double, 2>>>& cells)
 Surfaces spheres(double radius, const std::vector<Vec<3>>& centres, int frequency = 24) {
   Surfaces surfaces;
   surfaces.types.push_back(
-      std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(frequency, {radius, radius, radius}))));
+      std::make_shared<const RestSurface>(core::rest_surface(core::ellipsoid(frequency, {radius, radius, radius}))));
   for (const Vec<3>& centre : centres) add_cell(surfaces, 0, centre);
   return surfaces;
 }

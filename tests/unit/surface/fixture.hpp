@@ -17,9 +17,9 @@ inline core::MembraneLaw surface_law(const char* id, const std::vector<double>& 
   return make_membrane_law(shipped(ModelKind::membrane, id), values, ModelSetting{{1, 1, 1}, 1.0, false, 3});
 }
 
-inline Surfaces one_cell(const shape::TriangleSurface& shape, double prestretch = 1) {
+inline Surfaces one_cell(const core::TriangleSurface& shape, double prestretch = 1) {
   Surfaces surfaces;
-  surfaces.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape, prestretch)));
+  surfaces.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(shape, prestretch)));
   add_cell(surfaces, 0, {3, -2, 5});
   return surfaces;
 }
@@ -28,8 +28,8 @@ inline Surfaces one_cell(const shape::TriangleSurface& shape, double prestretch 
 inline Surfaces cells_out_of_shape(std::mt19937& random) {
   std::uniform_real_distribution<double> any(-0.1, 0.1);
   Surfaces s;
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::ellipsoid(4, {4, 3, 5}))));
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::biconcave_disc(5, 6))));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::ellipsoid(4, {4, 3, 5}))));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::biconcave_disc(5, 6))));
   add_cell(s, 0, {1000, 20, 30});
   add_cell(s, 1, {30, 2000, -40}, Eigen::AngleAxisd(1, Vec<3>(1, 2, 3).normalized()).toRotationMatrix());
   for (auto& places : s.position) {

@@ -103,7 +103,7 @@ double gradient_error(SurfaceForces& forces, Surfaces& s, std::mt19937& random) 
 
 TEST_CASE("forces of every shipped law on a surface are minus the gradient of its energy") {
   auto random = generator(71);
-  Surfaces s = one_cell(shape::biconcave_disc(6, 1));
+  Surfaces s = one_cell(core::biconcave_disc(6, 1));
   deform(s, random, 0.01);
   for (const NamedLaws& entry : laws_of_surfaces()) {
     CAPTURE(entry.name);
@@ -116,7 +116,7 @@ TEST_CASE("forces of every shipped law on a surface are minus the gradient of it
 
 TEST_CASE("forces on a surface have no sum and no torque") {
   auto random = generator(72);
-  Surfaces s = one_cell(shape::biconcave_disc(6, 1));
+  Surfaces s = one_cell(core::biconcave_disc(6, 1));
   deform(s, random, 0.01);
   for (const NamedLaws& entry : laws_of_surfaces()) {
     CAPTURE(entry.name);
@@ -133,9 +133,9 @@ TEST_CASE("forces on a surface have no sum and no torque") {
 }
 
 TEST_CASE("a surface that is turned and moved as a whole feels no force") {
-  const shape::TriangleSurface disc = shape::biconcave_disc(8, 1);
+  const core::TriangleSurface disc = core::biconcave_disc(8, 1);
   Surfaces s;
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(disc)));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(disc)));
   add_cell(s, 0, {30, -12, 7}, Eigen::AngleAxisd(2.1, Vec<3>(1, 2, 3).normalized()).toRotationMatrix());
   for (const NamedLaws& entry : laws_of_surfaces()) {
     if (!entry.at_rest) continue;
@@ -151,8 +151,8 @@ TEST_CASE("a surface that is turned and moved as a whole feels no force") {
 TEST_CASE("the forces on one cell do not depend on where others are, nor on the workers") {
   auto random = generator(73);
   Surfaces s;
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::unit_sphere(4))));
-  s.types.push_back(std::make_shared<const RestSurface>(shape::rest_surface(shape::biconcave_disc(7, 2))));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::unit_sphere(4))));
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::biconcave_disc(7, 2))));
   for (const int type : {0, 1, 1, 0, 1}) add_cell(s, type, {3.0 * type, 1, 0});
   deform(s, random, 0.01);
   const MembraneLaws laws = laws_of_surfaces().back().laws;
@@ -169,7 +169,7 @@ TEST_CASE("the forces on one cell do not depend on where others are, nor on the 
 TEST_CASE("a blown up sphere stays one and comes to rest under the pressure of Laplace's law") {
   const double modulus = 0.1, stretch = 1.2, tension = modulus * (1 - std::pow(stretch, -6)), stiffness = 1;
   // As created the volume law presses with 2 T/R.
-  Surfaces s = one_cell(shape::unit_sphere(8), stretch);
+  Surfaces s = one_cell(core::unit_sphere(8), stretch);
   SurfaceForces forces(
       s, {{surface_law("neo-hookean", {modulus, 0}), surface_law("volume", {stiffness, 1 / (1 - 2 * tension)})}});
   for (const double found : forces.tensions(s, 0)) CHECK(found == Approx(tension).epsilon(1e-10));
@@ -191,7 +191,7 @@ TEST_CASE("a blown up sphere stays one and comes to rest under the pressure of L
 }
 
 TEST_CASE("the energy of a stretched sphere is that of its law") {
-  Surfaces s = one_cell(shape::unit_sphere(6), 1.5);
+  Surfaces s = one_cell(core::unit_sphere(6), 1.5);
   const double area = s.types[0]->rest_surface_area, l2 = 2.25, l4 = l2 * l2;
   const auto energy = [&](const core::MembraneLaw& law) { return SurfaceForces(s, {{law}}).energy(s); };
   CHECK(energy(surface_law("neo-hookean", {0.1, 0})) == Approx(0.05 * (2 * l2 + 1 / l4 - 3) * area).epsilon(1e-12));
@@ -206,7 +206,7 @@ TEST_CASE(
     "Hooke's surface of Poisson's ratio 1/2 is the neo-Hookean one at small strains, and a sphere of it that is blown "
     "up has its energy") {
   auto random = generator(75);
-  Surfaces s = one_cell(shape::unit_sphere(3));
+  Surfaces s = one_cell(core::unit_sphere(3));
   std::uniform_real_distribution<double> any(-1e-6, 1e-6);
   for (auto& places : s.position) {
     for (double& place : places) place += any(random);
@@ -218,7 +218,7 @@ TEST_CASE(
     CHECK((force_on(s, i) - force_on(other, i)).norm() < 1e-4 * largest_force(s));
   // A sphere that is blown up by l is stretched by l along both directions: w = E (l - 1)^2/(1 - nu).
   for (const double nu : {-0.5, 0.0, 0.3, 0.9}) {
-    Surfaces blown = one_cell(shape::unit_sphere(3), 1.3);
+    Surfaces blown = one_cell(core::unit_sphere(3), 1.3);
     SurfaceForces forces(blown, {{surface_law("hooke", {0.2, nu})}});
     CHECK(forces.energy(blown) == Approx(0.2 * 0.09 / (1 - nu) * blown.types[0]->rest_surface_area).epsilon(1e-12));
   }
@@ -233,7 +233,7 @@ TEST_CASE("the stiffness of laws of surfaces is the slope of their tension along
 
 TEST_CASE("a law of triangles, nodes or bodies that gives its energy alone gets the forces of it") {
   auto random = generator(74);
-  Surfaces s = one_cell(shape::unit_sphere(3));
+  Surfaces s = one_cell(core::unit_sphere(3));
   deform(s, random, 0.05);
   const core::Facts of_triangles{
       .parameters = {}, .needs = {"invariant_1", "invariant_2"}, .gives = {"stress_1", "stress_2", "energy"}};
@@ -254,7 +254,7 @@ TEST_CASE("a law of triangles, nodes or bodies that gives its energy alone gets 
 }
 
 TEST_CASE("a law that surfaces cannot have is refused by name") {
-  const Surfaces s = one_cell(shape::unit_sphere(2));
+  const Surfaces s = one_cell(core::unit_sphere(2));
   const auto refused = [&](core::MembraneLaw law, const char* words) {
     CHECK_THROWS_WITH(SurfaceForces(s, {{law}}), Catch::Matchers::Contains(words));
   };

@@ -2,7 +2,6 @@
 #include <numbers>
 
 #include "fixture.hpp"
-#include "shape/outline.hpp"
 
 using namespace rouleau;
 using namespace rouleau::test;
@@ -14,15 +13,15 @@ constexpr double pi = std::numbers::pi;
 
 /// Largest error of the sum of both curvatures at any node of a sphere of radius 1, where it is 2.
 double curvature_error(int n) {
-  const RestSurface sphere = shape::rest_surface(shape::unit_sphere(n));
+  const RestSurface sphere = core::rest_surface(core::unit_sphere(n));
   double worst = 0;
   for (const double c : sphere.rest_curvature) worst = std::max(worst, std::abs(c - 2) / 2);
   return worst;
 }
 
 /// Energy of a Helfrich membrane of modulus 1 without spontaneous curvature: half of the integral of (c1 + c2)^2.
-double helfrich_energy(const shape::TriangleSurface& shape) {
-  const RestSurface rest = shape::rest_surface(shape);
+double helfrich_energy(const core::TriangleSurface& shape) {
+  const RestSurface rest = core::rest_surface(shape);
   double sum = 0;
   for (std::size_t i = 0; i < rest.node_area.size(); ++i) {
     sum += 0.5 * rest.rest_curvature[i] * rest.rest_curvature[i] * rest.node_area[i];
@@ -52,7 +51,7 @@ double helfrich_of_revolution(const Profile& profile) {
 
 TEST_CASE("a divided icosahedron has 20 n^2 triangles of nearly the same size on the sphere") {
   for (const int n : {1, 2, 5, 8}) {
-    const RestSurface sphere = shape::rest_surface(shape::unit_sphere(n));
+    const RestSurface sphere = core::rest_surface(core::unit_sphere(n));
     CHECK(sphere.mesh.triangle_count() == 20 * n * n);
     CHECK(sphere.mesh.node_count() == 10 * n * n + 2);
     CHECK(sphere.mesh.edge_count() == 30 * n * n);
@@ -66,7 +65,7 @@ TEST_CASE("a divided icosahedron has 20 n^2 triangles of nearly the same size on
 }
 
 TEST_CASE("what is no closed surface is refused with its place") {
-  const shape::TriangleSurface good = shape::unit_sphere(2);
+  const core::TriangleSurface good = core::unit_sphere(2);
   const auto fault = [&](auto change) {
     std::vector<std::array<int, 3>> triangles = good.triangles;
     int nodes = static_cast<int>(good.nodes.size());
@@ -109,7 +108,7 @@ TEST_CASE("what is no closed surface is refused with its place") {
 TEST_CASE("volume, area and inertia of an ellipsoid converge with the second order") {
   double before[3] = {0, 0, 0};
   for (const int n : {6, 12}) {
-    const Surfaces s = one_cell(shape::ellipsoid(n, {1.5, 1, 0.7}));
+    const Surfaces s = one_cell(core::ellipsoid(n, {1.5, 1, 0.7}));
     const Mesh& mesh = s.types[0]->mesh;
     const InertiaEllipsoid ellipsoid = inertia_ellipsoid(mesh, s.nodes(0));
     const PlaneDeformation plane = deformation_in_xy(ellipsoid);
@@ -129,7 +128,7 @@ TEST_CASE("volume, area and inertia of an ellipsoid converge with the second ord
 }
 
 TEST_CASE("areas of nodes add up to the surface, also where triangles are obtuse") {
-  const RestSurface cell = shape::rest_surface(shape::ellipsoid(5, {4, 1, 0.3}));
+  const RestSurface cell = core::rest_surface(core::ellipsoid(5, {4, 1, 0.3}));
   double sum = 0;
   for (const double area : cell.node_area) {
     CHECK(area > 0);
@@ -155,18 +154,18 @@ TEST_CASE("bending energies converge to those of sphere, ellipsoid and biconcave
       before = error;
     }
   };
-  order([](int n) { return shape::unit_sphere(n); }, 8 * pi, 2e-3);
+  order([](int n) { return core::unit_sphere(n); }, 8 * pi, 2e-3);
   order(
       [](int n) {
-        return shape::ellipsoid(n, {1, 0.6, 1});
+        return core::ellipsoid(n, {1, 0.6, 1});
       },
       helfrich_of_revolution([](double t) { return Eigen::Vector2d(std::sin(t), 0.6 * std::cos(t)); }), 0.01);
-  order([](int n) { return shape::biconcave_disc(n, 1); },
-        helfrich_of_revolution([](double t) { return shape::biconcave_place(pi / 2 - t); }), 0.03);
+  order([](int n) { return core::biconcave_disc(n, 1); },
+        helfrich_of_revolution([](double t) { return core::biconcave_curve(1, pi / 2 - t).place; }), 0.03);
 }
 
 TEST_CASE("the biconcave disc has the size of a red blood cell and even triangles") {
-  const RestSurface cell = shape::rest_surface(shape::biconcave_disc(24, 3.91));
+  const RestSurface cell = core::rest_surface(core::biconcave_disc(24, 3.91));
   // Evans and Fung, Microvasc. Res. 4 (1972): 94 um3 and 135 um2 for this radius.
   CHECK(cell.rest_volume == Approx(94).epsilon(0.02));
   CHECK(cell.rest_surface_area == Approx(135).epsilon(0.02));

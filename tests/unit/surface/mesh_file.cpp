@@ -28,7 +28,7 @@ class File {
     std::ofstream(path_, std::ios::binary) << text;
     return path_;
   }
-  [[nodiscard]] shape::TriangleSurface read(const std::string& text) const { return shape::read_mesh(write(text)); }
+  [[nodiscard]] core::TriangleSurface read(const std::string& text) const { return shape::read_mesh(write(text)); }
   [[nodiscard]] Error refusal(const std::string& text) const {
     try {
       (void)read(text);
@@ -44,7 +44,7 @@ class File {
 
 void put(std::ostream& out, const auto& value) { out.write(reinterpret_cast<const char*>(&value), sizeof value); }
 
-std::string off_of(const shape::TriangleSurface& s) {
+std::string off_of(const core::TriangleSurface& s) {
   std::ostringstream out;
   out.precision(17);
   out << "OFF\n# a comment\n" << s.nodes.size() << ' ' << s.triangles.size() << " 0\n";
@@ -53,7 +53,7 @@ std::string off_of(const shape::TriangleSurface& s) {
   return out.str();
 }
 
-std::string obj_of(const shape::TriangleSurface& s, bool from_the_end) {
+std::string obj_of(const core::TriangleSurface& s, bool from_the_end) {
   std::ostringstream out;
   out.precision(17);
   out << "# a comment\r\nmtllib none.mtl\r\no sphere\r\n";
@@ -67,7 +67,7 @@ std::string obj_of(const shape::TriangleSurface& s, bool from_the_end) {
   return out.str();
 }
 
-std::string ply_of(const shape::TriangleSurface& s, bool binary) {
+std::string ply_of(const core::TriangleSurface& s, bool binary) {
   std::ostringstream out;
   out.precision(17);
   out << "ply\nformat " << (binary ? "binary_little_endian" : "ascii") << " 1.0\ncomment a sphere\nelement vertex "
@@ -97,7 +97,7 @@ std::string ply_of(const shape::TriangleSurface& s, bool binary) {
   return out.str();
 }
 
-std::string stl_of(const shape::TriangleSurface& s, bool binary) {
+std::string stl_of(const core::TriangleSurface& s, bool binary) {
   std::ostringstream out;
   out.precision(9);
   if (binary) {
@@ -131,8 +131,8 @@ std::string stl_of(const shape::TriangleSurface& s, bool binary) {
 
 TEST_CASE("a surface is the same from OBJ, OFF, PLY and STL, in text and in binary") {
   const File file;
-  const shape::TriangleSurface sphere = shape::unit_sphere(3);
-  const auto is_the_sphere = [&](const shape::TriangleSurface& read) {
+  const core::TriangleSurface sphere = core::unit_sphere(3);
+  const auto is_the_sphere = [&](const core::TriangleSurface& read) {
     CHECK(read.triangles == sphere.triangles);
     REQUIRE(read.nodes.size() == sphere.nodes.size());
     for (std::size_t i = 0; i < read.nodes.size(); ++i) CHECK(read.nodes[i] == sphere.nodes[i]);
@@ -141,9 +141,9 @@ TEST_CASE("a surface is the same from OBJ, OFF, PLY and STL, in text and in bina
     is_the_sphere(file.read(text));
   for (const bool from_the_end : {false, true}) is_the_sphere(File(".OBJ").read(obj_of(sphere, from_the_end)));
   for (const std::string& text : {stl_of(sphere, false), stl_of(sphere, true)}) {
-    const shape::TriangleSurface read = file.read(text);
+    const core::TriangleSurface read = file.read(text);
     CHECK(read.nodes.size() == sphere.nodes.size());
-    CHECK(shape::rest_surface(read).rest_volume == Approx(shape::rest_surface(sphere).rest_volume).epsilon(1e-6));
+    CHECK(core::rest_surface(read).rest_volume == Approx(core::rest_surface(sphere).rest_volume).epsilon(1e-6));
   }
   // Squares become triangles.
   CHECK(file.read("OFF\n8 6 12\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n4 4 5 6 7\n"
@@ -158,7 +158,7 @@ TEST_CASE("a surface is the same from OBJ, OFF, PLY and STL, in text and in bina
 
 TEST_CASE("a file that holds no closed surface is refused with its place and the reason") {
   const File file;
-  const shape::TriangleSurface sphere = shape::unit_sphere(2);
+  const core::TriangleSurface sphere = core::unit_sphere(2);
   const std::string good = off_of(sphere);
   const auto changed = [&](const std::string& from, const std::string& to) {
     std::string text = good;
@@ -193,7 +193,7 @@ TEST_CASE("a file that holds no closed surface is refused with its place and the
   CHECK_THAT(file.refusal(ply.substr(0, 45)).what(), Contains("ends within its header"));
   CHECK_THAT(file.refusal(stl.substr(0, stl.size() - 9)).what(), Contains("ends within its faces"));
   // A sphere seen from inside.
-  shape::TriangleSurface inside = sphere;
+  core::TriangleSurface inside = sphere;
   for (auto& triangle : inside.triangles) std::swap(triangle[0], triangle[1]);
   CHECK_THAT(file.refusal(off_of(inside)).what(),
              Contains("clockwise seen from outside") && Contains("turn them over"));
@@ -202,7 +202,7 @@ TEST_CASE("a file that holds no closed surface is refused with its place and the
 namespace {
 
 /// A PLY file whose faces have further lists and numbers around their nodes, in any of its forms.
-std::string rich_ply_of(const shape::TriangleSurface& s, const std::string& form, const std::string& list) {
+std::string rich_ply_of(const core::TriangleSurface& s, const std::string& form, const std::string& list) {
   std::ostringstream out;
   out.precision(17);
   out << "ply\r\nformat " << form << " 1.0\r\nobj_info a scan\r\nelement camera 1\r\nproperty list uchar float view\r\n"
@@ -238,11 +238,11 @@ std::string rich_ply_of(const shape::TriangleSurface& s, const std::string& form
 
 TEST_CASE("of PLY the list of nodes is the face, and everything else is skipped") {
   const File file;
-  const shape::TriangleSurface sphere = shape::unit_sphere(3);
+  const core::TriangleSurface sphere = core::unit_sphere(3);
   for (const char* form : {"ascii", "binary_little_endian", "binary_big_endian"}) {
     for (const char* list : {"vertex_indices", "vertex_index"}) {
       CAPTURE(form, list);
-      const shape::TriangleSurface read = file.read(rich_ply_of(sphere, form, list));
+      const core::TriangleSurface read = file.read(rich_ply_of(sphere, form, list));
       CHECK(read.triangles == sphere.triangles);
       CHECK(read.nodes == sphere.nodes);
     }
@@ -265,13 +265,13 @@ TEST_CASE("of PLY the list of nodes is the face, and everything else is skipped"
 
 TEST_CASE("meshes are read in the ways that programs write them") {
   const File file;
-  const shape::TriangleSurface sphere = shape::unit_sphere(2);
-  const double volume = shape::rest_surface(sphere).rest_volume;
+  const core::TriangleSurface sphere = core::unit_sphere(2);
+  const double volume = core::rest_surface(sphere).rest_volume;
   const auto is_the_sphere = [&](const std::string& text) {
-    const shape::TriangleSurface read = file.read(text);
+    const core::TriangleSurface read = file.read(text);
     CHECK(read.nodes.size() == sphere.nodes.size());
     CHECK(read.triangles.size() == sphere.triangles.size());
-    CHECK(shape::rest_surface(read).rest_volume == Approx(volume).epsilon(1e-5));
+    CHECK(core::rest_surface(read).rest_volume == Approx(volume).epsilon(1e-5));
   };
   const auto upper = [](std::string text) {
     for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -307,10 +307,10 @@ TEST_CASE("meshes are read in the ways that programs write them") {
 
 TEST_CASE("nodes at the same place, or a last digit from it, are one where a mesh is not closed otherwise") {
   const File file;
-  const shape::TriangleSurface sphere = shape::unit_sphere(3);
-  const double volume = shape::rest_surface(sphere).rest_volume;
+  const core::TriangleSurface sphere = core::unit_sphere(3);
+  const double volume = core::rest_surface(sphere).rest_volume;
   const auto apart = [&](double distance) {  // every triangle with nodes of its own
-    shape::TriangleSurface made;
+    core::TriangleSurface made;
     int turn = 0;
     for (const auto& triangle : sphere.triangles) {
       const int first = static_cast<int>(made.nodes.size());
@@ -320,21 +320,21 @@ TEST_CASE("nodes at the same place, or a last digit from it, are one where a mes
     return made;
   };
   for (const double distance : {0.0, 1e-6, 5e-6}) {
-    const shape::TriangleSurface read = file.read(off_of(apart(distance)));
+    const core::TriangleSurface read = file.read(off_of(apart(distance)));
     CHECK(read.nodes.size() == sphere.nodes.size());
-    CHECK(shape::rest_surface(read).rest_volume == Approx(volume).epsilon(1e-4));
+    CHECK(core::rest_surface(read).rest_volume == Approx(volume).epsilon(1e-4));
   }
   CHECK(file.read(stl_of(apart(5e-6), true)).nodes.size() == sphere.nodes.size());
   CHECK_THAT(file.refusal(off_of(apart(1e-3))).what(), Contains("not closed"));
   // A hole stays one, and it is said what was joined.
-  shape::TriangleSurface open = apart(0);
+  core::TriangleSurface open = apart(0);
   open.triangles.pop_back();
   CHECK_THAT(file.refusal(off_of(open)).what(), Contains("not closed") && Contains("448 of its nodes lie within"));
-  shape::TriangleSurface twice = sphere;
+  core::TriangleSurface twice = sphere;
   twice.triangles.push_back(twice.triangles[5]);
   CHECK_THAT(file.refusal(off_of(twice)).what(), Contains("a face is there twice"));
   // Triangles between two copies of a pole have no area and go.
-  shape::TriangleSurface pole = sphere;
+  core::TriangleSurface pole = sphere;
   pole.nodes.push_back(pole.nodes[0]);
   const auto with_pole = std::find_if(pole.triangles.begin(), pole.triangles.end(), [](auto& t) { return t[0] == 0; });
   const auto [a, b, c] = *with_pole;
@@ -352,14 +352,14 @@ TEST_CASE("nodes at the same place, or a last digit from it, are one where a mes
 
 TEST_CASE("a mesh has the centroid of its volume in the origin, wherever its file has it") {
   const File file(".off");
-  shape::TriangleSurface body = shape::ellipsoid(4, {1, 0.5, 0.7});
+  core::TriangleSurface body = core::ellipsoid(4, {1, 0.5, 0.7});
   for (Vec<3>& node : body.nodes) node.x() += 0.3 * node.y() * node.y();  // not the mean of its nodes
   const auto surface = [&](const Vec<3>& offset, double unit) {
-    shape::TriangleSurface moved = body;
+    core::TriangleSurface moved = body;
     for (Vec<3>& node : moved.nodes) node += offset;
     return shape::mesh_surface({file.write(off_of(moved)), unit});
   };
-  const shape::TriangleSurface here = surface({0, 0, 0}, 1e-6), far = surface({40, -7, 1000}, 1e-6);
+  const core::TriangleSurface here = surface({0, 0, 0}, 1e-6), far = surface({40, -7, 1000}, 1e-6);
   REQUIRE(here.nodes.size() == far.nodes.size());
   Vec<3> moment = Vec<3>::Zero();
   for (const auto& [a, b, c] : here.triangles) {

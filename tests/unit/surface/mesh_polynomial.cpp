@@ -13,7 +13,7 @@ using namespace rouleau::test;
 TEST_CASE("a sum of Chebyshev's polynomials of a matrix does to its eigenvectors what it does to numbers") {
   auto random = generator(221);
   std::uniform_real_distribution<double> any(-1, 1);
-  const RestSurface rest = shape::rest_surface(shape::ellipsoid(3, {3, 4, 5}));
+  const RestSurface rest = core::rest_surface(core::ellipsoid(3, {3, 4, 5}));
   const Mesh& mesh = rest.mesh;
   const int n = mesh.node_count();
   const Mesh::Rings neighbours = neighbours_of(mesh);

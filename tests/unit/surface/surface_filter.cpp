@@ -41,7 +41,7 @@ TEST_CASE("the filter of surfaces is the inverse of the matrix of stretching and
   auto random = generator(211);
   std::normal_distribution<double> normal(0, 1);
   const double radius = GENERATE(3, 40);  // nodes 0.6 and 8 spacings apart
-  const RestSurface rest = shape::rest_surface(shape::biconcave_disc(4, radius));
+  const RestSurface rest = core::rest_surface(core::biconcave_disc(4, radius));
   const int n = rest.mesh.node_count();
   const auto [stretching, bending] = GENERATE(table<double, double>({{0, 0}, {3, 0}, {0, 500}, {60, 900}, {6e3, 9e4}}));
   const Eigen::MatrixXd laplacian = minus_laplacian(rest);
@@ -86,7 +86,7 @@ TEST_CASE("the filter of surfaces is the inverse of the matrix of stretching and
 TEST_CASE("a bending stiffness that the explicit step bears is left out of the filter") {
   auto random = generator(213);
   std::normal_distribution<double> normal(0, 1);
-  const RestSurface rest = shape::rest_surface(shape::biconcave_disc(4, 3));
+  const RestSurface rest = core::rest_surface(core::biconcave_disc(4, 3));
   std::vector<double> given(rest.x.size());
   for (double& force : given) force = normal(random);
   // What it makes of a force without the share that its mean takes in.
@@ -112,7 +112,7 @@ TEST_CASE("a bending stiffness that the explicit step bears is left out of the f
 TEST_CASE("what a membrane of a sphere resists is what the sphere's second harmonic says") {
   // On a sphere of radius R minus the Laplacian of a harmonic of degree l is l (l + 1)/R^2 times it; xy has degree 2.
   constexpr double radius = 6, stretching = 40, bending = 300;
-  const RestSurface rest = shape::rest_surface(shape::ellipsoid(8, {radius, radius, radius}));
+  const RestSurface rest = core::rest_surface(core::ellipsoid(8, {radius, radius, radius}));
   const int n = rest.mesh.node_count();
   std::vector<double> x(n), y(n), z(n), none(n), other(n), last(n);
   core::PolynomialRoom work;
@@ -131,7 +131,7 @@ TEST_CASE(
     "ahead") {
   auto random = generator(212);
   std::uniform_real_distribution<double> any(-0.1, 0.1);
-  Surfaces s = one_cell(shape::biconcave_disc(6, 3));
+  Surfaces s = one_cell(core::biconcave_disc(6, 3));
   for (auto& numbers : s.position) {
     for (double& number : numbers) number += any(random);
   }
