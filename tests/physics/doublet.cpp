@@ -32,12 +32,8 @@ class Doublet {
   /// cells' widths: long ones leave shallow minima.
   void relax(double depth, int most_steps, double longest) {
     depth_ = depth;
-    const auto morse = shipped(ModelKind::interaction, "morse");
     contacts_ = std::make_unique<core::Interactions<3>>(
-        cells_,
-        std::vector<core::Interaction>{{{0, 0},
-                                        make_potential(morse, {depth, 1 / well_.range, well_.distance, well_.cutoff},
-                                                       ModelSetting{{1, 1, 1}, 1.0, false, 3})}},
+        cells_, std::vector<core::Interaction>{{{0, 0}, morse(depth, 1 / well_.range, well_.distance, well_.cutoff)}},
         core::Domain<3>{{box, box, box}, {false, false, false}});
     Eigen::VectorXd place = place_of(cells_);
     minimise(place, {1e-4 * depth, longest * std::cbrt(cells_.types[0]->rest_volume), 1e-9, most_steps, 1e-7},

@@ -1,66 +1,57 @@
-// Cells and laws for the tests of this folder: lattice units are SI units here.
+// Cells for the tests of core, in lattice units.
 #pragma once
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "base/worker.hpp"
 #include "core/domain/images.hpp"
 #include "core/membrane/membranes.hpp"
-#include "plan/placed_cells.hpp"
-#include "plugin/catalog.hpp"
-#include "plugin/handles.hpp"
+#include "core/surface/triangle_surface.hpp"
 #include "unit/periodic_box.hpp"
 #include "unit/random.hpp"
+#include "unit/shipped_models.hpp"
 
 namespace rouleau::test {
 
 using namespace core;
-using namespace plugin;
-using namespace scene;
-
-inline const Manifest& shipped(ModelKind kind, const char* id) {
-  static const Catalog catalog({ROULEAU_PLUGINS});
-  return catalog.find(kind, id, {});
-}
-inline core::MembraneLaw law(const char* id, const std::vector<double>& values,
-                             const units::LatticeUnits& units = {1, 1, 1}) {
-  return make_membrane_law(shipped(ModelKind::membrane, id), values, ModelSetting{units, 1.0, false});
-}
-inline core::Potential potential(const char* id, const std::vector<double>& values) {
-  return make_potential(shipped(ModelKind::interaction, id), values, ModelSetting{{1, 1, 1}, 1.0, false});
-}
-inline core::MembraneLaw neo_hookean(double modulus) { return law("neo-hookean", {modulus, 0}); }
-inline core::MembraneLaw bending(double modulus) { return law("bending", {modulus, 0, 0}); }
-inline core::Potential morse(double depth, double decay, double distance, double cutoff) {
-  return potential("morse", {depth, decay, distance, cutoff});
-}
 
 struct Placed {
   double x, y, angle = 0;
 };
 
-/// Scene of biconcave cells of one type (radius 20, spacing 1) in lattice coordinates.
-inline Scene biconcave_scene(const std::vector<Placed>& places, core::Domain<2> domain, int height,
-                             int segments = 100) {
-  Scene scene{};
-  scene.domain.nodes = {static_cast<int>(domain.period(0)),
-                        domain.periodic[1] ? static_cast<int>(domain.period(1)) : height};
-  scene.domain.size = {domain.period(0), static_cast<double>(scene.domain.nodes[1])};
-  scene.domain.periodic[1] = domain.periodic[1];
-  scene.cell_types.push_back({"red", Biconcave{20.0}, segments, 1.0, {}});
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    scene.cells.push_back({0, {places[i].x + 0.5, places[i].y + 0.5}, places[i].angle, "/cells/" + std::to_string(i)});
+/// A biconcave outline of radius 20, its segments equally long.
+inline RestShape biconcave_shape(int segments) {
+  std::vector<double> angle(segments + 1), x(segments), y(segments);
+  for (int i = 0; i <= segments; ++i) angle[i] = 2 * std::numbers::pi * i / segments;
+  // Shares out the length of the polygon as it is, again and again.
+  double worst = 1;
+  for (int pass = 0; pass < 40 && worst > 1e-15; ++pass) {
+    std::vector<double> length{0};
+    for (int i = 0; i < segments; ++i) {
+      const auto from = biconcave_curve(20, angle[i]).place, to = biconcave_curve(20, angle[i + 1]).place;
+      x[i] = from.x(), y[i] = from.y();
+      length.push_back(length.back() + (to - from).norm());
+    }
+    worst = 0;
+    std::vector<double> next = angle;
+    for (int i = 1, k = 1; i < segments; ++i) {
+      const double wanted = length.back() * i / segments;
+      while (length[k] < wanted) ++k;
+      next[i] = angle[k] - (angle[k] - angle[k - 1]) * (length[k] - wanted) / (length[k] - length[k - 1]);
+      worst = std::max(worst, std::abs(next[i] - angle[i]));
+    }
+    angle = next;
   }
-  return scene;
+  return make_rest_shape(std::move(x), std::move(y));
 }
 
-/// The same cells, wherever they are and whatever they cross.
+/// Biconcave cells, wherever they are and whatever they cross.
 inline Membranes biconcave_cells(const std::vector<Placed>& places, int segments = 100) {
   Membranes all;
-  all.types = plan::make_cells<2>(biconcave_scene({{0, 1000, 0}}, periodic_box(1000000), 2000, segments), 1.0).types;
-  all.types.resize(4, all.types.front());  // for cells that are given another type
+  all.types.resize(4, std::make_shared<const RestShape>(biconcave_shape(segments)));  // cells may be given another type
   for (const Placed& place : places) add_cell(all, 0, place.x, place.y, place.angle);
   return all;
 }
@@ -78,7 +69,7 @@ inline Membranes mating_circles(double radius, double gap, int segments, double 
   for (const double r : {radius, radius + gap}) {
     std::vector<double> x, y;
     for (int i = 0; i < segments; ++i) {
-      const double at = i * 2 * 3.141592653589793 / segments + (r == radius ? angle : 0);
+      const double at = i * 2 * std::numbers::pi / segments + (r == radius ? angle : 0);
       x.push_back(r * std::cos(at));
       y.push_back(r * std::sin(at));
     }
@@ -95,7 +86,7 @@ inline void deform(Membranes& membranes, std::mt19937& random, double amplitude,
       const double ax = amplitude / 4 * uniform(random), ay = amplitude / 4 * uniform(random),
                    phase = 4 * uniform(random);
       for (int i = cell.first; i < cell.end(); ++i) {
-        const double angle = 6.283185307179586 * wave * (i - cell.first) / cell.count + phase;
+        const double angle = 2 * std::numbers::pi * wave * (i - cell.first) / cell.count + phase;
         membranes.position[0][static_cast<std::size_t>(i)] += ax * std::cos(angle);
         membranes.position[1][static_cast<std::size_t>(i)] += ay * std::sin(angle);
       }

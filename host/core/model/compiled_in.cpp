@@ -42,8 +42,8 @@ CollisionOperator collision_operator(const rouleau_model& model, double tau, con
   return instance(model, model.collision, lattice_setup(dimension, 1 / tau, inertia), facts);
 }
 
-MembraneLaw membrane_law(const rouleau_model& model, const Facts& facts) {
-  return instance(model, model.membrane, lattice_setup(2, 1, false), facts);
+MembraneLaw membrane_law(const rouleau_model& model, const Facts& facts, int dimension) {
+  return instance(model, model.membrane, lattice_setup(dimension, 1, false), facts);
 }
 
 Potential potential(const rouleau_model& model, const Facts& facts) {

@@ -20,11 +20,11 @@ struct Facts {
 };
 
 /// Instances of models as the SDK makes them: rouleau::collision<T>, rouleau::membrane<T>, rouleau::interaction<T>.
-/// `tau`: relaxation time of the suspending fluid; `dimension`: 2 for D2Q9, 3 for D3Q19. Throws std::invalid_argument
-/// with the model's own words where its constructor refuses the parameters.
+/// `tau`: relaxation time of the suspending fluid; `dimension`: 2 for D2Q9 and outlines, 3 for D3Q19 and surfaces.
+/// Throws std::invalid_argument with the model's own words where its constructor refuses the parameters.
 CollisionOperator collision_operator(const rouleau_model& model, double tau, const Facts& facts = {},
                                      bool inertia = false, int dimension = 2);
-MembraneLaw membrane_law(const rouleau_model& model, const Facts& facts);
+MembraneLaw membrane_law(const rouleau_model& model, const Facts& facts, int dimension = 2);
 Potential potential(const rouleau_model& model, const Facts& facts);
 
 }  // namespace rouleau::core

@@ -7,7 +7,6 @@
 
 using namespace rouleau;
 using namespace rouleau::core;
-using namespace rouleau::plugin;
 using namespace rouleau::test;
 
 namespace {

@@ -5,8 +5,9 @@
 #include "core/domain/decomposition.hpp"
 #include "core/domain/transport.hpp"
 #include "core/fluid/layers.hpp"
-#include "flow_fixture.hpp"
+#include "unit/flow_fixture.hpp"
 #include "unit/random.hpp"
+#include "unit/shipped_models.hpp"
 
 using namespace rouleau;
 using namespace rouleau::core;
@@ -21,8 +22,7 @@ double noise(int x, int y, int what) { return 1e-3 * ((x * 73 + y * 191 + what *
 template <class T>
 std::unique_ptr<Fluid<T>> noisy_fluid(FluidSetting<2> setting, const Domain<2>& domain, const Ranks<2>& ranks) {
   setting.domain = domain;
-  auto fluid =
-      std::make_unique<Fluid<T>>(setting, make_collision("trt", {0.1875}, 1 / setting.relaxation_rate, true), ranks);
+  auto fluid = std::make_unique<Fluid<T>>(setting, trt(1 / setting.relaxation_rate, true), ranks);
   fluid->set_state([](int x, int y) {
     return typename Fluid<T>::State{
         noise(x, y, 0), {noise(x, y, 1), noise(x, y, 2)}, {noise(x, y, 3), noise(x, y, 4), noise(x, y, 5), 0}};

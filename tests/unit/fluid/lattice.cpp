@@ -4,11 +4,11 @@
 #include <random>
 #include <rouleau/d2q9.hpp>
 
-#include "flow_fixture.hpp"
+#include "unit/flow_fixture.hpp"
+#include "unit/shipped_models.hpp"
 
 using namespace rouleau;
 using namespace rouleau::core;
-using namespace rouleau::plugin;
 using namespace rouleau::test;
 namespace d2q9 = rouleau::d2q9;
 
@@ -70,7 +70,7 @@ TEST_CASE("in-place streaming gives the same populations as two arrays, with wal
   const double tau = 0.8;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-0.01, 0.01);
-  const auto collision = make_collision("trt", {0.1875}, tau, inertia);
+  const auto collision = trt(tau, inertia);
   FluidSetting<2> setting{
       .domain = {{nx, ny}, {true, periodic_y}}, .relaxation_rate = 1 / tau, .inertia = inertia, .walls = {-0.01, 0.02}};
   if (periodic_y) setting.walls = {};
@@ -106,7 +106,7 @@ TEST_CASE("in-place streaming gives the same populations as two arrays, with wal
 TEST_CASE("the number of workers does not change a bit") {
   const auto run = [](int workers) {
     FluidSetting<2> setting{.domain = {{40, 23}, {true, false}}, .relaxation_rate = 1.1, .walls = {-0.02, 0.02}};
-    Fluid<float> fluid(setting, make_collision("trt", {0.1875}, 1 / 1.1, true));
+    Fluid<float> fluid(setting, trt(1 / 1.1, true));
     fluid.set_state([](int x, int y) {
       return Fluid<float>::State{0, {1e-3 * ((x * 7 + y * 3) % 11), 1e-3 * ((x * 5 + y) % 7)}, {}};
     });
@@ -133,7 +133,7 @@ TEST_CASE("mass does not drift between walls or in a periodic box") {
   FluidSetting<2> setting{
       .domain = {{32, 16}, {true, periodic_y}}, .relaxation_rate = 0.9, .inertia = true, .walls = {-0.05, 0.05}};
   if (periodic_y) setting.walls = {};
-  Fluid<double> fluid(setting, make_collision("bgk", {}, 1 / 0.9, true));
+  Fluid<double> fluid(setting, shipped_collision("bgk", {}, 1 / 0.9, true));
   fluid.set_state([](int x, int y) {
     return Fluid<double>::State{1e-3 * (x % 3), {1e-2 * (y % 2), 1e-2 * (x % 5)}, {}};
   });
@@ -151,7 +151,7 @@ TEMPLATE_TEST_CASE("mass and largest speed are those of the moments, and a value
   const int nx = 37, ny = 11;
   const FluidSetting<2> setting{
       .domain = {{nx, ny}, {true, false}}, .relaxation_rate = 1.0, .body_force = {1e-3, -2e-3}};
-  Fluid<TestType> fluid(setting, make_collision("trt", {0.1875}, 1, false));
+  Fluid<TestType> fluid(setting, trt(1, false));
   const int bad = GENERATE(-1, 0, 20, 36);
   fluid.set_state([&](int x, int y) {
     const double density = x == bad && y == 5 ? std::nan("") : uniform(random);

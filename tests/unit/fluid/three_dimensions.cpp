@@ -1,5 +1,4 @@
-// D3Q19 in place: against plain two-array streaming, between walls and across periodic borders; in blocks; its
-// observers.
+// D3Q19 in place: against plain two-array streaming, between walls and across periodic borders; in blocks; its observers.
 #include <array>
 #include <catch2/catch.hpp>
 #include <random>
@@ -9,7 +8,8 @@
 #include "core/domain/transport.hpp"
 #include "core/fluid/flow_rate.hpp"
 #include "core/fluid/periodic.hpp"
-#include "flow_fixture.hpp"
+#include "unit/flow_fixture.hpp"
+#include "unit/shipped_models.hpp"
 
 using namespace rouleau;
 using namespace rouleau::core;
@@ -21,7 +21,7 @@ using Nodes = std::array<int, 3>;
 template <class T>
 using Fluid3 = Fluid<T, D3Q19>;
 
-CollisionOperator trt(double tau, bool inertia) { return make_collision("trt", {0.1875}, tau, inertia, 3); }
+CollisionOperator trt_in_space(double tau, bool inertia) { return trt(tau, inertia, 3); }
 
 /// A number of either sign that belongs to a node of the lattice, whatever block it lies in.
 double noise(int x, int y, int z, int what) { return 1e-3 * ((x * 73 + y * 191 + z * 59 + what * 37) % 101 - 50) / 50; }
@@ -128,9 +128,10 @@ TEST_CASE(
   FluidSetting<3> setting{.domain = domain, .relaxation_rate = 1 / tau, .inertia = true};
   if (!periodic_y && kind != Solid::interpolated) setting.walls = {-0.01, 0.02};
   setting.solid = some_solid(domain.size, kind);
-  Fluid3<double> fluid(setting, trt(tau, true));
+  Fluid3<double> fluid(setting, trt_in_space(tau, true));
   fluid.set_state(noisy_state<double>);
-  TwoArrayFluid plain{domain, setting.solid, setting.walls, trt(tau, true), std::vector<double>(18 * 5 * 4 * 19)};
+  TwoArrayFluid plain{domain, setting.solid, setting.walls, trt_in_space(tau, true),
+                      std::vector<double>(18 * 5 * 4 * 19)};
   fluid.settle();
   const auto each = [&](auto function) {
     for_each_node(domain.block, [&](int x, int y, int z) {
@@ -159,7 +160,7 @@ namespace {
 template <class T>
 std::unique_ptr<Fluid3<T>> noisy_fluid(FluidSetting<3> setting, const Domain<3>& domain, const Ranks<3>& ranks) {
   setting.domain = domain;
-  auto fluid = std::make_unique<Fluid3<T>>(setting, trt(1 / setting.relaxation_rate, true), ranks);
+  auto fluid = std::make_unique<Fluid3<T>>(setting, trt_in_space(1 / setting.relaxation_rate, true), ranks);
   fluid->set_state(noisy_state<T>);
   for (int i = 0; i < fluid->rows().end; ++i) {
     const auto [y, z] = row_of(domain.block, i);
@@ -232,8 +233,8 @@ TEMPLATE_TEST_CASE("a lattice of three dimensions cut into blocks has the same b
       for (int q = 0; q < 19 && !(setting.solid && setting.solid->at(at)); ++q)
         different += block->population(q, x, {y, z}) != whole->population(q, at[0], {at[1], at[2]}) ? 1 : 0;
       if (!whole->mask().active(at[0], at[1] + whole_domain.size[1] * at[2])) return;
-      // What a stencil with this base node reads: each node of the halo is an image of one in the whole lattice, or
-      // lies beyond a wall there, too.
+      // What a stencil with this base node reads: each node of the halo is an image of one in the whole lattice, or lies
+      // beyond a wall there, too.
       for (int j = 0; j < 64; ++j) {
         const Nodes step{j % 4 - 1, j / 4 % 4 - 1, j / 16 - 1};
         Nodes to;
@@ -290,7 +291,7 @@ TEST_CASE(
 TEMPLATE_TEST_CASE("in three dimensions mass, speed and energy are those of the moments", "", float, double) {
   const Domain<3> domain({21, 6, 5}, {true, false, true});
   const FluidSetting<3> setting{.domain = domain, .relaxation_rate = 1.0, .body_force = {1e-3, -2e-3, 5e-4}};
-  Fluid3<TestType> fluid(setting, trt(1, false));
+  Fluid3<TestType> fluid(setting, trt_in_space(1, false));
   fluid.set_state(noisy_state<TestType>);
   fluid.settle();
   double mass = 0, square = 0, kinetic = 0;
@@ -322,7 +323,7 @@ TEST_CASE(
   const Domain<3> domain({18, 5, 4}, {true, false, true});
   FluidSetting<3> setting{.domain = domain, .relaxation_rate = 1.0, .body_force = {1e-3, 0, 0}};
   setting.solid = some_solid(domain.size);
-  Fluid3<double> fluid(setting, trt(1, false));
+  Fluid3<double> fluid(setting, trt_in_space(1, false));
   fluid.set_state(noisy_state<double>);
   for (int step = 0; step < 3; ++step) {
     fluid.settle();
@@ -361,5 +362,5 @@ TEST_CASE(
 TEST_CASE("solid nodes in two dimensions are refused") {
   FluidSetting<2> setting{.domain = {{8, 8}, {true, false}}, .relaxation_rate = 1};
   setting.solid = std::make_shared<const SolidNodes<2>>(std::array{8, 8}, [](const auto&) { return false; });
-  CHECK_THROWS_AS(Fluid<double>(setting, make_collision("trt", {0.1875}, 1, false)), std::invalid_argument);
+  CHECK_THROWS_AS(Fluid<double>(setting, trt(1, false)), std::invalid_argument);
 }

@@ -9,7 +9,6 @@
 #include "unit/cell_fixture.hpp"
 
 using namespace rouleau::core;
-using namespace rouleau::plugin;
 using namespace rouleau::test;
 
 namespace {

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "unit/blocks_fixture.hpp"
+#include "unit/rank_threads.hpp"
 
 using namespace rouleau;
 using namespace rouleau::monitor;

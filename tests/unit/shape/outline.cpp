@@ -26,7 +26,22 @@ Membranes membranes_of(const Outline& outline) {
   return m;
 }
 
-// Of Evans and Fung's curve (host/shape/outline.cpp) with R = 3.91 um, integrated.
+/// Scene of biconcave cells of one type (radius 20, spacing 1) in lattice coordinates.
+inline Scene biconcave_scene(const std::vector<Placed>& places, core::Domain<2> domain, int height,
+                             int segments = 100) {
+  Scene scene{};
+  scene.domain.nodes = {static_cast<int>(domain.period(0)),
+                        domain.periodic[1] ? static_cast<int>(domain.period(1)) : height};
+  scene.domain.size = {domain.period(0), static_cast<double>(scene.domain.nodes[1])};
+  scene.domain.periodic[1] = domain.periodic[1];
+  scene.cell_types.push_back({"red", Biconcave{20.0}, segments, 1.0, {}});
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    scene.cells.push_back({0, {places[i].x + 0.5, places[i].y + 0.5}, places[i].angle, "/cells/" + std::to_string(i)});
+  }
+  return scene;
+}
+
+// Of Evans and Fung's curve (core/surface/triangle_surface.hpp) with R = 3.91 um, integrated.
 constexpr double exact_perimeter = 19.27042, exact_area = 13.62222;  // um, um2
 
 }  // namespace

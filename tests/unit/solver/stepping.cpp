@@ -1,42 +1,15 @@
-// When something is due between two steps, how workers wait for each other, and cells that a solver does not take.
+// How workers wait for each other, cells that a solver does not take, and a force that drives the fluid.
 #include <catch2/catch.hpp>
 #include <thread>
 #include <vector>
 
 #include "core/solver/barrier.hpp"
 #include "core/solver/solver.hpp"
-#include "plugin/catalog.hpp"
-#include "plugin/handles.hpp"
-#include "scene/output_schedule.hpp"
+#include "unit/shipped_models.hpp"
 
 using namespace rouleau;
-using namespace rouleau::plan;
-using namespace rouleau::scene;
 using namespace rouleau::core;
-
-TEST_CASE("the next step of a schedule is the first one that is due") {
-  scene::StageSetting setting{};
-  setting.units.time = 1;
-  setting.shear_rate = 1;
-  setting.max_steps = 1000;
-  Cadence cadence;
-  const double interval = GENERATE(1.0, 1.4, 1.5, 2.5, 7.3, 100.0);
-  cadence.seconds = interval;
-  if (interval == 7.3) cadence.strain = 4.9;
-  const scene::OutputSchedule schedule(cadence, setting, true);
-  long next = schedule.next(0);
-  for (long step = 1; step < 1000; ++step) {
-    CAPTURE(interval, step);
-    REQUIRE(schedule.due(step) == (step == next));
-    if (step == next) next = schedule.next(step);
-  }
-}
-
-TEST_CASE("a schedule without an interval is never due again") {
-  scene::StageSetting setting{};
-  setting.max_steps = 1000;
-  CHECK(scene::OutputSchedule(Cadence{}, setting, true).next(0) == std::numeric_limits<long>::max());
-}
+using namespace rouleau::test;
 
 TEST_CASE("nobody leaves a barrier before all have come") {
   const int workers = GENERATE(1, 2, 5);
@@ -76,12 +49,6 @@ TEST_CASE("a solver refuses cells whose type it has no laws for, or no state of 
 
 namespace {
 
-CollisionOperator trt(bool inertia, int dimension) {
-  static const rouleau::plugin::Catalog catalog({ROULEAU_PLUGINS});
-  static const rouleau::plugin::Manifest& manifest = catalog.find(rouleau::plugin::ModelKind::collision, "trt", {});
-  return rouleau::plugin::make_collision_operator(manifest, {0.1875}, {{}, 1, inertia, dimension});
-}
-
 /// Velocity of every node before the next step; all are the same in a box without walls.
 template <int D, class Solver>
 std::array<double, D> velocity_of(Solver& solver) {
@@ -104,7 +71,7 @@ TEMPLATE_TEST_CASE("a driven fluid begins at rest, and has all of the force's mo
   size.fill(4), periodic.fill(true);
   setup.domain = {size, periodic};
   setup.inertia = GENERATE(false, true);
-  setup.collision = trt(setup.inertia, D);
+  setup.collision = trt(1, setup.inertia, D);
   setup.body_force_x = 1e-5, setup.body_force_y = -2e-5, setup.body_force_z = D == 3 ? 3e-5 : 0;
   const std::array<double, 3> force{setup.body_force_x, setup.body_force_y, setup.body_force_z};
   typename Solver<double, TestType>::Cells none;

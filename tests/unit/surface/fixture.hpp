@@ -1,4 +1,4 @@
-// Surfaces, laws and comparisons for the tests of this folder.
+// Surfaces and comparisons for the tests of this folder.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,14 +8,10 @@
 
 #include "core/surface/surface_forces.hpp"
 #include "core/surface/surface_normals.hpp"
-#include "shape/surface.hpp"
+#include "core/surface/triangle_surface.hpp"
 #include "unit/cell_fixture.hpp"
 
 namespace rouleau::test {
-
-inline core::MembraneLaw surface_law(const char* id, const std::vector<double>& values) {
-  return make_membrane_law(shipped(ModelKind::membrane, id), values, ModelSetting{{1, 1, 1}, 1.0, false, 3});
-}
 
 inline Surfaces one_cell(const core::TriangleSurface& shape, double prestretch = 1) {
   Surfaces surfaces;

@@ -11,7 +11,8 @@
 #include <sstream>
 
 #include "base/error.hpp"
-#include "fixture.hpp"
+#include "shape/surface.hpp"
+#include "unit/surface/fixture.hpp"
 
 using namespace rouleau;
 using namespace rouleau::test;
