@@ -14,7 +14,7 @@ namespace {
 
 /// A channel along the diagonal of a periodic box, from end to end, as a long rectangle: the region comes again in its
 /// images.
-RegionPointer<2> diagonal_channel(const Domain<2>& domain, double half_height) {
+RegionPointer<2> diagonal_channel(const rouleau::core::Domain<2>& domain, double half_height) {
   const Vec<2> along(domain.size[0], domain.size[1]), across = Vec<2>(-along[1], along[0]).normalized() * half_height;
   const Vec<2> middle = (along - Vec<2>::Ones()) / 2;
   const Border<2> rectangle{
@@ -23,14 +23,14 @@ RegionPointer<2> diagonal_channel(const Domain<2>& domain, double half_height) {
   return std::make_shared<FacetedRegion<2>>(with_images(rectangle, domain));
 }
 
-struct ChannelFlow {
+struct FlowErrors {
   double profile;  ///< L2 error of the velocity over its L2 norm
   double mass;     ///< gained by each node, density 1
 };
 
-ChannelFlow channel_flow(int nx, int ny, double half_height) {
+FlowErrors channel_flow(int nx, int ny, double half_height) {
   const double tau = 2, viscosity = (tau - 0.5) / 3, force = 1e-6;
-  const Domain<2> domain({nx, ny}, {true, true});
+  const rouleau::core::Domain<2> domain({nx, ny}, {true, true});
   const Vec<2> along = Vec<2>(nx, ny).normalized();
   const auto channel = diagonal_channel(domain, half_height);
   FluidSetting<2> setting{
@@ -62,7 +62,7 @@ TEST_CASE("flow through a channel turned by any angle is that of Poiseuille to s
   };
   for (const auto& [nx, ny] : {Box{30, 30}, Box{40, 20}, Box{48, 16}, Box{64, 16}}) {
     const double apart = nx * ny / std::hypot(nx, ny), half_height = 0.37 * apart;
-    const ChannelFlow coarse = channel_flow(nx, ny, half_height), fine = channel_flow(2 * nx, 2 * ny, 2 * half_height);
+    const FlowErrors coarse = channel_flow(nx, ny, half_height), fine = channel_flow(2 * nx, 2 * ny, 2 * half_height);
     std::cout << "turned by " << std::atan2(ny, nx) * 180 / std::numbers::pi << " degrees, half height " << half_height
               << ": profile off by " << coarse.profile << ", " << fine.profile << " at twice the nodes; mass "
               << fine.mass << "\n";
