@@ -44,7 +44,7 @@ struct Packed : PackedScene<Packed> {
 };
 
 struct Placed {
-  TriangleSurface surface;
+  rouleau::core::TriangleSurface surface;
   Eigen::AlignedBox3d box;
 };
 
@@ -75,7 +75,7 @@ double between_segments(const Vec<3>& p, const Vec<3>& u, const Vec<3>& q, const
 /// Smallest distance of two surfaces, the second moved by `shift`: of nodes from triangles, and of edges. No more than
 /// `most`.
 double distance(const Placed& a, const Placed& b, const Vec<3>& shift, double most) {
-  const auto reaches = [](const TriangleSurface& surface) {
+  const auto reaches = [](const rouleau::core::TriangleSurface& surface) {
     double longest = 0;
     for (const auto& t : surface.triangles)
       for (int k = 0; k < 3; ++k)
