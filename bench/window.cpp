@@ -188,8 +188,8 @@ Window<D> window_around(const plan::Plan& plan, const core::Decomposition<D>& bl
   if (!(fastest > 1.1 * here)) runner = -1;
 
   setup.domain = domain;
+  setup.region = nullptr;
   setup.solid = nullptr;
-  setup.tube_radius = 0;
   setup.layers.clear();
   setup.oscillation = {};
   setup.mean_velocity = 0;

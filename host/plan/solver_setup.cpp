@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "constants.hpp"
 
@@ -37,13 +38,18 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
       .strain_per_step = plan.facts.stages[index].shear_rate * stage.units.time,
       .time_step = stage.stage->density_factor,  // proportional to it
       .tension_unit = stage.units.unit(units::dimension::tension)};
-  if constexpr (D == 3) {
-    setup.solid = scene::solid_nodes(scene);
-    setup.tube_radius = scene.domain.tube_radius.value_or(0) / scene::lattice_spacing(scene);
-    // The mean over the tube's true section, when the solver goes by that over its nodes.
-    if (setup.solid)
-      setup.mean_velocity *= scene.domain.content() / std::pow(scene::lattice_spacing(scene), 3) /
-                             static_cast<double>(setup.solid->fluid_count());
+  setup.region = scene::fluid_region<D>(scene);
+  if (setup.region) {
+    const double spacing = scene::lattice_spacing(scene);
+    setup.solid = std::make_shared<const core::SolidNodes<D>>(setup.domain.size, setup.region);
+    // The mean over the true section, when the solver goes by that over its nodes.
+    setup.mean_velocity *=
+        scene.domain.content() / std::pow(spacing, D) / static_cast<double>(setup.solid->fluid_count());
+    if (scene.domain.tube_radius) {
+      const double radius = *scene.domain.tube_radius / spacing;
+      setup.wall_area = 2 * std::numbers::pi * radius * setup.domain.size[0];
+      setup.section_flow = [radius](double y, double z, double force) { return core::tube_flow(radius, force, y, z); };
+    }
   }
   if (!plan.has_cells) return setup;
   for (std::size_t t = 0; t < scene.cell_types.size(); ++t) {

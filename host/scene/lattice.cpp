@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/fluid/solid_nodes.hpp"
 #include "scene_reader.hpp"
 
 namespace rouleau::scene {
@@ -20,12 +21,19 @@ core::Domain<D> lattice_domain(const Scene& scene) {
 template core::Domain<2> lattice_domain(const Scene&);
 template core::Domain<3> lattice_domain(const Scene&);
 
-std::shared_ptr<const core::SolidNodes<3>> solid_nodes(const Scene& scene) {
-  if (!scene.domain.tube_radius) return nullptr;
-  return std::make_shared<const core::SolidNodes<3>>(
-      lattice_domain<3>(scene).size,
-      core::tube_region(lattice_domain<3>(scene).size, *scene.domain.tube_radius / lattice_spacing(scene)));
+template <int D>
+core::RegionPointer<D> fluid_region(const Scene& scene) {
+  const double spacing = lattice_spacing(scene);
+  if constexpr (D == 3) {
+    if (scene.domain.tube_radius)
+      return core::tube_region(lattice_domain<D>(scene).size, *scene.domain.tube_radius / spacing);
+  }
+  const core::RegionPointer<D>& region = scene.domain.region<D>();
+  // The domain begins half a spacing before its first node.
+  return region ? core::magnified<D>(region, 1 / spacing, core::Vec<D>::Constant(-0.5)) : nullptr;
 }
+template core::RegionPointer<2> fluid_region(const Scene&);
+template core::RegionPointer<3> fluid_region(const Scene&);
 
 std::vector<core::Layer> lattice_layers(const Scene& scene) {
   std::vector<core::Layer> layers;

@@ -1,13 +1,12 @@
 // The lattice of a scene: its nodes along the sides of the domain, its spacing, and its box as core has it.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include "core/domain/domain.hpp"
 #include "core/fluid/layers.hpp"
-#include "core/fluid/solid_nodes.hpp"
+#include "core/geometry/region.hpp"
 #include "scene.hpp"
 
 namespace rouleau::scene {
@@ -22,8 +21,9 @@ double lattice_spacing(const Scene& scene);
 template <int D = 2>
 core::Domain<D> lattice_domain(const Scene& scene);
 
-/// Its nodes in the walls of a tube; null: it is none.
-std::shared_ptr<const core::SolidNodes<3>> solid_nodes(const Scene& scene);
+/// Where the fluid of a tube or between walls of any shape is, with images, in spacings; null: planes alone close it.
+template <int D>
+core::RegionPointer<D> fluid_region(const Scene& scene);
 
 /// Its layers of other viscosities.
 std::vector<core::Layer> lattice_layers(const Scene& scene);

@@ -14,10 +14,12 @@
 #include <vector>
 
 #include "base/faults.hpp"
+#include "core/geometry/region.hpp"
 #include "dimension_words.hpp"
 #include "json/document.hpp"
 #include "json/json.hpp"
 #include "vector.hpp"
+#include "wall_shape.hpp"
 
 namespace rouleau::scene {
 
@@ -35,6 +37,14 @@ struct Domain {
   std::array<bool, 3> periodic{true, false, true};
   /// Of a tube along x through the middle, in place of walls across y and z, m; in three dimensions.
   std::optional<double> tube_radius = {};
+  /// All outside of `within`, and all inside of an obstacle, is wall, beside whatever lies across y and z.
+  std::optional<WallShape> within = {};
+  std::vector<WallShape> obstacles = {};
+  /// What these leave to the fluid, by dimension, with images along periodic axes, in m; null: there are none. And its
+  /// area or volume, m2 or m3. Both made by shape::build_walls().
+  core::RegionPointer<2> region_in_plane = {};
+  core::RegionPointer<3> region_in_space = {};
+  double region_content = 0;
 
   [[nodiscard]] int dimension() const { return size.dimension(); }
   [[nodiscard]] const DimensionWords& words() const { return words_of(dimension()); }
@@ -47,7 +57,16 @@ struct Domain {
   /// Of what the walls enclose: m2, or m3 in three dimensions.
   [[nodiscard]] double content() const {
     if (tube_radius) return std::numbers::pi * *tube_radius * *tube_radius * size.x();
+    if (has_shapes()) return region_content;
     return size.product();
+  }
+  [[nodiscard]] bool has_shapes() const { return within || !obstacles.empty(); }
+  template <int D>
+  [[nodiscard]] const core::RegionPointer<D>& region() const {
+    if constexpr (D == 2)
+      return region_in_plane;
+    else
+      return region_in_space;
   }
   /// Whether walls close it along z, too.
   [[nodiscard]] bool is_duct() const { return !periodic[2]; }

@@ -27,9 +27,10 @@ double change(const Duct& duct) {
   BasicSolverSetup<3> setup{.domain = {duct.size, {true, false, false}}, .tau = 1.5};
   setup.walls = duct.walls;
   setup.body_force_x = duct.force;
-  setup.tube_radius = duct.tube_radius;
-  if (duct.tube_radius > 0)
+  if (duct.tube_radius > 0) {
+    setup.section_flow = [&](double y, double z, double force) { return tube_flow(duct.tube_radius, force, y, z); };
     setup.solid = std::make_shared<const SolidNodes<3>>(duct.size, tube_region(duct.size, duct.tube_radius));
+  }
   setup.developed = true;
   setup.collision = make_collision("trt", {0.1875}, setup.tau, false, 3);
   Surfaces none;

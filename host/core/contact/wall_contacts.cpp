@@ -2,31 +2,24 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "core/domain/exact_sum.hpp"
+#include "core/geometry/formulas.hpp"
 
 namespace rouleau::core {
 
 template <int D>
-typename Wall<D>::Nearest Wall<D>::operator()(const Vec<D>& at) const {
-  if (axis > 0) return {inward * (at[axis] - place), inward * Vec<D>::Unit(axis)};
-  Vec<D> outward = at - middle;
-  outward[0] = 0;
-  const double radius = outward.norm();
-  if (!(radius > 0)) return {place, Vec<D>::Zero()};
-  return {place - radius, -outward / radius};
-}
-
-template <int D>
 WallContacts<D>::WallContacts(Cells& cells, const std::vector<WallInteraction>& interactions, const Domain<D>& domain,
-                              double tube_radius) {
-  Vec<D> middle;
-  for (int axis = 0; axis < D; ++axis) middle[axis] = (domain.size[axis] - 1) / 2.0;
-  if (tube_radius > 0) walls_.push_back({0, tube_radius, 0, middle});
-  for (int axis = 1; axis < D; ++axis) {
-    if (!domain.walled(axis) || tube_radius > 0) continue;
-    walls_.push_back({axis, -0.5, 1, middle});
-    walls_.push_back({axis, domain.size[axis] - 0.5, -1, middle});
+                              RegionPointer<D> region) {
+  if (region) {
+    walls_.push_back({.axis = 0, .region = intersection<D>({std::move(region), between_walls(domain)})});
+  } else {
+    for (int axis = 1; axis < D; ++axis) {
+      if (!domain.walled(axis)) continue;
+      walls_.push_back({axis, -0.5, 1});
+      walls_.push_back({axis, domain.size[axis] - 0.5, -1});
+    }
   }
   if (walls_.empty()) throw std::invalid_argument("a potential between cells and walls needs walls");
   for (const auto& [type, potential] : interactions) {

@@ -10,6 +10,7 @@
 #include "core/domain/domain.hpp"
 #include "core/domain/ranks.hpp"
 #include "core/domain/vec.hpp"
+#include "core/geometry/region.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/surface/surfaces.hpp"
 
@@ -18,32 +19,31 @@ namespace rouleau::core {
 /// A wall as a potential sees it: how far a place is from it, and which way leads away from it.
 template <int D>
 struct Wall {
-  int axis;       ///< that a plane lies across; 0: a tube along x
-  double place;   ///< of a plane along its axis; of a tube: its radius
-  double inward;  ///< of a plane: 1 where the fluid lies above it, -1 below
-  Vec<D> middle;  ///< of a tube
+  int axis;                      ///< that a plane lies across; 0: what closes a region
+  double place = 0, inward = 0;  ///< of a plane: along its axis; 1 where the fluid lies above it, -1 below
+  RegionPointer<D> region = {};
 
-  struct Nearest {
-    double distance;  ///< negative beyond the wall
-    Vec<D> away;      ///< of length 1; 0 in the middle of a tube
-  };
-  [[nodiscard]] Nearest operator()(const Vec<D>& at) const;
+  [[nodiscard]] Distance<D> operator()(const Vec<D>& at) const {
+    if (axis == 0) return region->distance(at);
+    return {inward * (at[axis] - place), inward * Vec<D>::Unit(axis)};
+  }
 };
 
 /// Node i with rest measure w (in two dimensions a length, in three an area) at distance r of a wall: energy w phi(r),
 /// force w f(r) away from the wall. At a contact of two cells the weight is w/2, for each of the two has nodes; a wall
 /// has none, so that a membrane's own count whole (docs: physics, interaction). Walls lie across the axes that are not
-/// periodic, or are a tube along x around the middle of the domain. They take the reaction, normal to themselves.
+/// periodic, each of its own; what closes a region is one wall with those planes: the nearest place of all counts. Walls
+/// take the reaction, normal to themselves.
 template <int D>
 class WallContacts {
  public:
   using Cells = std::conditional_t<D == 2, Membranes, Surfaces>;
 
   /// Adds what potentials remember to `cells.wall_contacts`, as far as it is not there from an earlier stage.
-  /// tube_radius: in place of the domain's walls; 0: none. Throws std::invalid_argument without walls, and for
-  /// potentials that read how surfaces slide.
+  /// `region`: in which the fluid is, beside the domain's walls; null: all. Throws std::invalid_argument without walls,
+  /// and for potentials that read how surfaces slide.
   WallContacts(Cells& cells, const std::vector<WallInteraction>& interactions, const Domain<D>& domain,
-               double tube_radius = 0);
+               RegionPointer<D> region = {});
 
   /// Pass over cells: adds to the forces, and advances the state of the contacts by one step.
   void run(Worker worker, Cells& cells) const;

@@ -1,6 +1,8 @@
 // Developed flow along x, without cells: of a channel, and through a section that walls enclose.
 #pragma once
 
+#include <functional>
+
 #include "walls.hpp"
 
 namespace rouleau::core {
@@ -35,6 +37,8 @@ ChannelFlow channel_flow(const Setup& setup) {
 struct SectionPoint {
   double velocity = 0, slope_y = 0, slope_z = 0;
 };
+/// By y and z from the middle of the section, for a force per volume over the viscosity.
+using SectionFlow = std::function<SectionPoint(double y, double z, double force)>;
 
 /// Of a rectangular duct, between walls across y that may move along x, and walls across z at rest. Lattice units; y
 /// and z count from the middle. White, Viscous Fluid Flow (2006), section 3-3; the walls' part is Laplace's equation in

@@ -92,6 +92,15 @@ RegionPointer<D> box_region(const Vec<D>& lower, const Vec<D>& upper) {
 }
 
 template <int D>
+RegionPointer<D> between_walls(const Domain<D>& domain) {
+  Vec<D> lower = Vec<D>::Constant(-std::numeric_limits<double>::infinity()), upper = -lower;
+  for (int k = 0; k < D; ++k) {
+    if (domain.walled(k)) lower[k] = -0.5, upper[k] = domain.size[k] - 0.5;
+  }
+  return box_region<D>(lower, upper);
+}
+
+template <int D>
 RegionPointer<D> ball_region(const Vec<D>& center, double radius) {
   return std::make_shared<BallRegion<D>>(center, radius);
 }
@@ -102,6 +111,8 @@ RegionPointer<3> extruded(RegionPointer<2> section, int axis, double from, doubl
 
 template RegionPointer<2> box_region(const Vec<2>&, const Vec<2>&);
 template RegionPointer<3> box_region(const Vec<3>&, const Vec<3>&);
+template RegionPointer<2> between_walls(const Domain<2>&);
+template RegionPointer<3> between_walls(const Domain<3>&);
 template RegionPointer<2> ball_region(const Vec<2>&, double);
 template RegionPointer<3> ball_region(const Vec<3>&, double);
 

@@ -9,6 +9,10 @@ namespace rouleau::core {
 template <int D>
 RegionPointer<D> box_region(const Vec<D>& lower, const Vec<D>& upper);
 
+/// Between the walls across a domain's axes.
+template <int D>
+RegionPointer<D> between_walls(const Domain<D>& domain);
+
 /// A disc, or a ball.
 template <int D>
 RegionPointer<D> ball_region(const Vec<D>& center, double radius);

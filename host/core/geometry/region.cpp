@@ -64,6 +64,25 @@ class Joined final : public Region<D> {
 };
 
 template <int D>
+class Magnified final : public Region<D> {
+ public:
+  Magnified(RegionPointer<D> region, double scale, const Vec<D>& shift)
+      : region_(std::move(region)), scale_(scale), shift_(shift) {}
+  [[nodiscard]] Distance<D> distance(const Vec<D>& place) const override {
+    const Distance<D> found = region_->distance((place - shift_) / scale_);
+    return {scale_ * found.value, found.gradient};
+  }
+  [[nodiscard]] double share_inside(const Vec<D>& place, const Vec<D>& by) const override {
+    return region_->share_inside((place - shift_) / scale_, by / scale_);
+  }
+
+ private:
+  RegionPointer<D> region_;
+  double scale_;
+  Vec<D> shift_;
+};
+
+template <int D>
 class WithImages final : public Region<D> {
  public:
   WithImages(RegionPointer<D> region, const Domain<D>& domain) : region_(std::move(region)), domain_(domain) {}
@@ -112,6 +131,11 @@ RegionPointer<D> union_of(std::vector<RegionPointer<D>> regions) {
 }
 
 template <int D>
+RegionPointer<D> magnified(RegionPointer<D> region, double scale, const Vec<D>& shift) {
+  return std::make_shared<Magnified<D>>(std::move(region), scale, shift);
+}
+
+template <int D>
 RegionPointer<D> with_images(RegionPointer<D> region, const Domain<D>& domain) {
   return std::make_shared<WithImages<D>>(std::move(region), domain);
 }
@@ -124,6 +148,8 @@ template RegionPointer<2> intersection(std::vector<RegionPointer<2>>);
 template RegionPointer<3> intersection(std::vector<RegionPointer<3>>);
 template RegionPointer<2> union_of(std::vector<RegionPointer<2>>);
 template RegionPointer<3> union_of(std::vector<RegionPointer<3>>);
+template RegionPointer<2> magnified(RegionPointer<2>, double, const Vec<2>&);
+template RegionPointer<3> magnified(RegionPointer<3>, double, const Vec<3>&);
 template RegionPointer<2> with_images(RegionPointer<2>, const Domain<2>&);
 template RegionPointer<3> with_images(RegionPointer<3>, const Domain<3>&);
 

@@ -39,6 +39,9 @@ template <int D>
 RegionPointer<D> intersection(std::vector<RegionPointer<D>> regions);
 template <int D>
 RegionPointer<D> union_of(std::vector<RegionPointer<D>> regions);
+/// A region `scale` times as large, its origin moved by `shift` after that.
+template <int D>
+RegionPointer<D> magnified(RegionPointer<D> region, double scale, const Vec<D>& shift);
 /// A region with its images along the periodic axes of a domain. It must not reach further than one period from the
 /// domain.
 template <int D>

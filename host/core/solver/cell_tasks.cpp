@@ -38,8 +38,7 @@ CellTasks<T, D>::CellTasks(const BasicSolverSetup<D>& setup, Cells<D>& cells, Fl
         std::make_unique<Interactions<D>>(cells_, setup.interactions, setup.domain, setup.self_interactions);
   }
   if (!setup.wall_interactions.empty())
-    wall_contacts_ =
-        std::make_unique<WallContacts<D>>(cells_, setup.wall_interactions, setup.domain, setup.tube_radius);
+    wall_contacts_ = std::make_unique<WallContacts<D>>(cells_, setup.wall_interactions, setup.domain, setup.region);
   if constexpr (D == 3) {
     if (corrects_motion()) normals_ = std::make_unique<SurfaceNormals>(cells_);
   }

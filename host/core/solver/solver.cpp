@@ -49,8 +49,8 @@ FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const Cells& cel
         "between walls across z, the developed flow of layers or of an oscillation is not known");
   if (setup.solid && setup.solid->size() != setup.domain.size)
     throw std::invalid_argument("solid nodes are those of the whole lattice");
-  if (setup.solid && setup.developed && setup.tube_radius == 0)
-    throw std::invalid_argument("of walls of any shape the developed flow of a tube alone is known");
+  if (setup.solid && setup.developed && !setup.section_flow)
+    throw std::invalid_argument("the developed flow between these walls is not known");
   const auto move = [](const WallVelocity& walls) { return walls.lower != 0 || walls.upper != 0; };
   if (setup.solid && (move(setup.walls) || move(setup.oscillation.walls)))
     throw std::invalid_argument("walls of a domain with solid nodes are at rest");
@@ -97,7 +97,7 @@ void set_section_flow(Fluid<T, D3Q19>& fluid, const BasicSolverSetup<3>& setup) 
   fluid.set_state([&](int, int y, int z) {
     if (known != std::array{y, z}) {
       const double from_y = y - (size[1] - 1) / 2.0, from_z = z - (size[2] - 1) / 2.0;
-      point = setup.tube_radius > 0 ? tube_flow(setup.tube_radius, force, from_y, from_z) : duct.at(from_y, from_z);
+      point = setup.section_flow ? setup.section_flow(from_y, from_z, force) : duct.at(from_y, from_z);
       known = {y, z};
     }
     typename Fluid<T, D3Q19>::State state{};
@@ -283,8 +283,8 @@ WallForces<D> AnySolver<D>::wall_forces() const {
 template <int D>
 typename AnyFluid<D>::WallStress AnySolver<D>::wall_stress() const {
   const WallForces<D> forces = wall_forces();
-  if (setup_.tube_radius == 0) return fluid().mean_wall_stress(forces);
-  const double mean = forces.all(0) / (2 * std::numbers::pi * setup_.tube_radius * setup_.domain.size[0]);
+  if (!setup_.solid) return fluid().mean_wall_stress(forces);
+  const double mean = setup_.wall_area > 0 ? forces.all(0) / setup_.wall_area : NAN;
   return {mean, mean};
 }
 

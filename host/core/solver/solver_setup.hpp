@@ -7,6 +7,7 @@
 #include "core/contact/contact_law.hpp"
 #include "core/coupling/kernel_kind.hpp"
 #include "core/domain/domain.hpp"
+#include "core/fluid/developed_flow.hpp"
 #include "core/fluid/layers.hpp"
 #include "core/fluid/oscillation.hpp"
 #include "core/fluid/relaxation.hpp"
@@ -30,8 +31,12 @@ template <int D>
 struct BasicSolverSetup {
   /// Periodic along x; along y and z periodic, or between walls.
   Domain<D> domain = {};
-  /// Walls of any shape, at rest, in three dimensions: solid nodes of the domain; null: none.
+  /// Walls of any shape, at rest, beside those across y and z: the region of the fluid, with images along periodic
+  /// axes, and the domain's nodes outside of it; null: none.
+  RegionPointer<D> region = {};
   std::shared_ptr<const SolidNodes<D>> solid = {};
+  /// Area of their walls, in two dimensions length, that the mean stress on them is of; 0: not known.
+  double wall_area = 0;
   /// Relaxation time of the suspending fluid in time steps; its kinematic viscosity is (tau - 1/2)/3.
   double tau = 1;
   /// Parts of the suspending fluid with another viscosity, which do not move. With cells, neither the semi-implicit
@@ -52,17 +57,16 @@ struct BasicSolverSetup {
   /// Begin with the developed flow of the walls, the body force and, between plane walls across y alone, their
   /// oscillation; false: with a fluid at rest, or the one before.
   bool developed = false;
+  /// That flow in a section across x between walls of any shape; empty: it is not known.
+  SectionFlow section_flow = {};
   CollisionOperator collision = {};
 
   KernelKind kernel = KernelKind::peskin4;
   /// What Membranes::cells name as their types.
   std::vector<CellType> cell_types = {};
   std::vector<Interaction> interactions = {};
-  /// Only between walls, not where y is periodic.
+  /// Only between walls.
   std::vector<WallInteraction> wall_interactions = {};
-  /// Of a tube along x around the middle, from whose wall these act in place of planes; 0: none. `solid` is what holds
-  /// its fluid.
-  double tube_radius = 0;
   std::vector<SelfInteraction> self_interactions = {};
   /// The step of stiff membranes (SemiImplicitFilter, SurfaceFilter).
   bool semi_implicit = false;

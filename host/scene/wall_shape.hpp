@@ -1,0 +1,53 @@
+// Shapes of walls, as a scene writes them.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "vector.hpp"
+
+namespace rouleau::scene {
+
+/// A part of the domain, in its coordinates, m. What reaches along an axis without an end has an infinite number there.
+struct WallShape {
+  struct Box {
+    Vector lower, upper;
+  };
+  struct Sphere {
+    Vector center;
+    double radius;
+  };  ///< in two dimensions a disc
+  struct Cylinder {
+    int axis;
+    std::array<double, 2> center;  ///< along the other two axes, in their order
+    double radius, from, to;
+  };  ///< of three dimensions
+  struct Outline {
+    std::vector<std::array<double, 2>> points;
+    double lower, upper;
+  };  ///< a closed polygon of x and y; in three dimensions between two heights along z
+  struct Mesh {
+    std::filesystem::path file;
+    double unit;      ///< m, of the file's coordinates
+    Vector at, axis;  ///< where the file's origin lies, and what its y axis is turned to
+    double angle;     ///< rad, then about that axis
+  };                  ///< closed triangles, of three dimensions
+  struct Image {
+    std::vector<std::filesystem::path> files;  ///< one, or a stack along z
+    double pixel, spacing;                     ///< m; `spacing` of a stack's pictures
+    bool light;                                ///< what is light belongs to it; false: what is dark
+    Vector at;                                 ///< its lower left corner
+  };
+  enum class Kind { all_of, any_of, first_without_others };
+  struct Joined {
+    Kind kind;
+    std::vector<WallShape> parts;
+  };
+  std::variant<Box, Sphere, Cylinder, Outline, Mesh, Image, Joined> is;
+  std::string pointer = {};  ///< JSON pointer of what says so
+};
+
+}  // namespace rouleau::scene
