@@ -293,6 +293,7 @@ class Explainer {
     const auto fitting = std::count_if(branches.begin(), branches.end(),
                                        [&](const Json& branch) { return judge.explain(at, branch).empty(); });
     if (fitting == 1) return {};
+    if (ask_ == Ask::whether) return fault(at, "");  // shapes within shapes would double the work with every level
     const Choice choice(schema_, branches, at.value);
     const auto name = subject(at.pointer);
     if (fitting > 1) {

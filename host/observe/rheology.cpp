@@ -9,7 +9,8 @@
 namespace rouleau::observe {
 
 bool is_driven_channel(const scene::StageSetting& setting, const scene::Scene& scene) {
-  return setting.largest_body_force().x() != 0 && setting.fastest_wall() == 0 && !scene.domain.periodic[1];
+  return setting.largest_body_force().x() != 0 && setting.fastest_wall() == 0 &&
+         (!scene.domain.periodic[1] || scene.domain.has_shapes());
 }
 
 template <int D>

@@ -95,7 +95,7 @@ double stiffness_error(double compression, double reynolds, double viscosity_rat
 
 double steady_flow_error(const scene::Domain& domain, double spacing) {
   const auto square = [](double value) { return value * value; };
-  if (domain.tube_radius) return tube_error * square(spacing / *domain.tube_radius);
+  if (domain.tube_radius || domain.has_shapes()) return tube_error * square(spacing / (domain.across(1) / 2));
   if (!domain.is_duct()) return 0;
   return duct_error *
          square(spacing / (domain.periodic[1] ? domain.size.z() : std::min(domain.size.y(), domain.size.z())));

@@ -78,7 +78,8 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<scen
     double names = 0;
     for (const scene::CellPlacement& cell : scene.cells)
       names += static_cast<double>(scene.cell_types[cell.type].name.size());
-    const double of_cell = row::cells + (scene.domain.periodic[1] ? 0 : row::wall_gap) + row::aggregates;
+    const double of_cell =
+        row::cells + (scene.domain.periodic[1] && !scene.domain.has_shapes() ? 0 : row::wall_gap) + row::aggregates;
     estimate.tables_bytes += estimate.outputs * (cells * of_cell + names + row::sizes);
   }
   return estimate;

@@ -104,7 +104,9 @@ CellTravel cell_travel(const scene::Scene& scene, const scene::StageSetting& sta
     for (const scene::CellPlacement& cell : scene.cells) {
       const double place = cell.center[across] / spacing;
       scene::Vector& velocity = velocities.emplace_back();
-      if (domain.tube_radius) {
+      if (domain.has_shapes()) {
+        velocity = height * height / (8 * viscosity) * drive;  // at the widest place: no faster
+      } else if (domain.tube_radius) {
         const double radius = *domain.tube_radius / spacing;
         scene::Vector off = cell.center - 0.5 * domain.size;
         off.x() = 0;
@@ -128,6 +130,7 @@ CellTravel cell_travel(const scene::Scene& scene, const scene::StageSetting& sta
 
 bool follows_cells(const scene::Scene& scene, const scene::StageSetting& stage) {
   if (scene.fluid.inertia || scene.cells.empty() || !frame_follows[scene.domain.dimension() - 2]) return false;
+  if (scene.domain.has_shapes()) return false;  // cells do not travel together
   // Between no walls a driven fluid goes faster and faster, and cells with it.
   return scene.domain.periodic[1] ? stage.is_driven() : cell_travel(scene, stage).mean > follows_from;
 }

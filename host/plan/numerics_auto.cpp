@@ -14,6 +14,7 @@
 #include "scene/scene_reader.hpp"
 #include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
+#include "shape/walls.hpp"
 
 namespace rouleau::plan {
 
@@ -243,6 +244,7 @@ OpenScene::OpenScene(json::Document document, Faults& faults) : document_(std::m
   if (!faults.empty()) return;
   Faults of_draft;
   draft_ = scene::read_scene(draft, of_draft);
+  if (of_draft.empty()) shape::build_walls(*draft_, of_draft);
   if (of_draft.empty()) of_draft.attempt([&] { shape::add_random_cells(*draft_); });
   if (of_draft.empty()) return;
   document_ = *draft;  // whose reading says them
@@ -255,6 +257,14 @@ json::Document OpenScene::filled_in(const NumericsBounds& bounds, std::optional<
   choice = NumericsProblem(*draft_, document_.root(), bounds).solve();
   for (const ChosenValue& value : choice->values) document.put(value.pointer, value.value, origin);
   return document;
+}
+
+void OpenScene::build_walls(scene::Scene& scene, Faults& faults) const {
+  if (!draft_) return shape::build_walls(scene, faults);
+  scene.domain.region_in_plane = draft_->domain.region_in_plane;
+  scene.domain.region_in_space = draft_->domain.region_in_space;
+  scene.domain.region_content = draft_->domain.region_content;
+  scene.domain.region_width = draft_->domain.region_width;
 }
 
 }  // namespace rouleau::plan

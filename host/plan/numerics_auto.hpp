@@ -21,6 +21,8 @@ class OpenScene {
   /// (docs/accuracy.md) and the bounds. What the scene says of its numerics stays, so that it can be read again. No
   /// choice for a scene that pins its numerics, or has faults.
   [[nodiscard]] json::Document filled_in(const NumericsBounds& bounds, std::optional<NumericsChoice>& choice) const;
+  /// Makes the region of a scene that was read from it; once for all lattices, where one is chosen.
+  void build_walls(scene::Scene& scene, Faults& faults) const;
 
  private:
   json::Document document_;

@@ -129,6 +129,7 @@ std::vector<scene::LatticeSize> NumericsProblem::lattices() const {
 /// In three dimensions a few layers with periodic sides stand for a plane flow: what counts is how far walls are apart.
 double NumericsProblem::half_width() const {
   const scene::Domain& domain = scene_.domain;
+  if (domain.has_shapes()) return domain.region_width / 2;
   if (domain.dimension() == 2 || !scene::has_walls(domain)) return domain.size.least() / 2;
   double apart = INFINITY;
   for (int axis = 0; axis < domain.dimension(); ++axis) {

@@ -55,24 +55,40 @@ NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
   return bounds;
 }
 
+/// The hash of a file that is there; `wanted`: the one that is written, at `place`, or nothing.
+std::string pinned_hash(const std::filesystem::path& file, const std::string& name, const std::string& wanted,
+                        const Place& place) {
+  static_cast<void>(InputFile(file, largest_named));  // before hours of hashing
+  std::string found = sha256(file);
+  if (wanted.empty() || wanted == found) return found;
+  throw Error(Cause::bad_input, place,
+              in_quotes(name) + " has another hash, " + found + ": it is not the file that was meant, or has changed",
+              {"bring the file back, or leave out sha256"});
+}
+
 /// The document says from here on which files it names, wherever it is kept, and what was in them.
 void pin_files(json::Document& document) {
   for (const std::string& entry : scene::entries_with_files(document.root())) {
-    const auto& written = document.root().at(nlohmann::json::json_pointer(entry));
-    const std::string name = written.at("file").get<std::string>(), wanted = written.value("sha256", "");
-    const auto file = std::filesystem::absolute(std::filesystem::path(document.file()).parent_path() / name);
-    std::error_code ignored;
-    if (name.find('\0') != std::string::npos || !std::filesystem::is_regular_file(file, ignored)) continue;
-    static_cast<void>(InputFile(file, largest_named));  // before hours of hashing
-    const std::string found = sha256(file);
-    if (!wanted.empty() && wanted != found) {
-      throw Error(
-          Cause::bad_input, document.place(entry + "/sha256"),
-          in_quotes(name) + " has another hash, " + found + ": it is not the file that was meant, or has changed",
-          {"bring the file back, or leave out sha256"});
-    }
-    document.put(entry + "/file", file.lexically_normal().string(), document.file());
-    document.put(entry + "/sha256", found, document.file());
+    auto written = document.root().at(nlohmann::json::json_pointer(entry));
+    std::vector<std::string> wanted, found;
+    scene::each_text(written["sha256"], [&](const auto& hash) { wanted.push_back(hash); });
+    bool there = true;
+    scene::each_text(written["file"], [&](auto& text) {
+      const auto name = text.template get<std::string>();
+      const auto file = std::filesystem::absolute(std::filesystem::path(document.file()).parent_path() / name);
+      std::error_code ignored;
+      if (name.find('\0') != std::string::npos || !std::filesystem::is_regular_file(file, ignored)) there = false;
+      if (!there) return;
+      const std::string before = found.size() < wanted.size() ? wanted[found.size()] : "";
+      found.push_back(pinned_hash(file, name, before, document.place(entry + "/sha256")));
+      text = file.lexically_normal().string();
+    });
+    if (!there) continue;
+    if (wanted.size() > found.size())
+      throw Error(Cause::bad_input, document.place(entry + "/sha256"), "there are more hashes than files");
+    document.put(entry + "/file", written["file"], document.file());
+    document.put(entry + "/sha256", written["file"].is_array() ? nlohmann::json(found) : nlohmann::json(found.front()),
+                 document.file());
   }
 }
 
@@ -88,6 +104,7 @@ ReadScene completed(const OpenScene& open, const NumericsBounds& bounds, Faults&
   std::optional<NumericsChoice> choice;
   auto document = std::make_shared<json::Document>(open.filled_in(bounds, choice));
   ReadScene read{scene::read_scene(std::move(document), faults), std::move(choice)};
+  if (faults.empty()) open.build_walls(read.scene, faults);
   if (faults.empty()) faults.attempt([&] { shape::add_random_cells(read.scene); });
   return read;
 }

@@ -45,6 +45,7 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
     // The mean over the true section, when the solver goes by that over its nodes.
     setup.mean_velocity *=
         scene.domain.content() / std::pow(spacing, D) / static_cast<double>(setup.solid->fluid_count());
+    setup.width = scene.domain.region_width / spacing;
     if (scene.domain.tube_radius) {
       const double radius = *scene.domain.tube_radius / spacing;
       setup.wall_area = 2 * std::numbers::pi * radius * setup.domain.size[0];

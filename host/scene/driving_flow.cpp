@@ -30,6 +30,7 @@ double channel_viscosity(const Scene& scene) {
 }
 
 double duct_share(const Domain& domain) {
+  if (domain.has_shapes()) return std::nan("");
   if (!domain.is_duct()) return 1;
   const double pi = std::numbers::pi, height = domain.size.y(), width = domain.size.z();
   if (domain.tube_radius)  // Hagen and Poiseuille: pi G R^4 / (8 mu)
@@ -54,13 +55,13 @@ Vector driving_force(const Stage& stage, const Scene& scene) {
     const double radius = *scene.domain.tube_radius;
     force.x() = 8 * scene.fluid.viscosity * *stage.mean_velocity / (radius * radius);
   } else if (stage.mean_velocity) {
-    const double height = scene.domain.size.y();
-    force.x() = 12 * channel_viscosity(scene) * *stage.mean_velocity / (height * height * duct_share(scene.domain));
+    const double height = scene.domain.across(1), share = scene.domain.has_shapes() ? 1 : duct_share(scene.domain);
+    force.x() = 12 * channel_viscosity(scene) * *stage.mean_velocity / (height * height * share);
   }
   return force;
 }
 
-bool has_walls(const Domain& domain) { return !domain.periodic[1] || domain.is_duct(); }
+bool has_walls(const Domain& domain) { return !domain.periodic[1] || domain.is_duct() || domain.has_shapes(); }
 
 double wall_distance(const Domain& domain) { return domain.across(domain.periodic[1] && domain.is_duct() ? 2 : 1); }
 

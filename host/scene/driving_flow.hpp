@@ -8,12 +8,14 @@ namespace rouleau::scene {
 /// Whether the walls move in a stage.
 bool walls_move(const Stage& stage);
 
-/// Force per volume that drives the fluid in a stage, N/m3; for a mean velocity what it would take without cells.
+/// Force per volume that drives the fluid in a stage, N/m3; for a mean velocity what it would take without cells, between
+/// walls of any shape in a channel as wide as they are at most.
 Vector driving_force(const Stage& stage, const Scene& scene);
 
 /// Whether walls hold the fluid, across y or z.
 bool has_walls(const Domain& domain);
-/// From wall to wall, m: across y, or across z where y is periodic; the diameter of a tube.
+/// From wall to wall, m: across y, or across z where y is periodic; the diameter of a tube, or of the largest disc or
+/// ball between walls of any shape.
 double wall_distance(const Domain& domain);
 /// Of a force what no wall across it takes, so that it drives a flow.
 Vector unheld(Vector force, const Domain& domain);
@@ -25,7 +27,7 @@ double driving_part(const Vector& force, const Domain& domain);
 double channel_viscosity(const Scene& scene);
 
 /// Flow rate of a channel with walls across z, too, or of a tube, over that of a plane channel in the whole domain, at
-/// the same pressure gradient and viscosity; 1 without such walls.
+/// the same pressure gradient and viscosity; 1 without such walls, NaN between walls of any shape: it is not known.
 double duct_share(const Domain& domain);
 
 /// Viscosities of the suspending fluid, Pa s: the least and the largest, layers included.

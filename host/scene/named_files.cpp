@@ -7,7 +7,8 @@ namespace rouleau::scene {
 namespace {
 
 void collect(const nlohmann::json& value, const std::string& pointer, std::vector<std::string>& entries) {
-  if (value.is_object() && value.contains("file") && value["file"].is_string()) entries.push_back(pointer);
+  if (value.is_object() && value.contains("file") && each_text(value["file"], [](const auto&) {}))
+    entries.push_back(pointer);
   for (const auto& [key, part] : value.items()) {
     if (part.is_structured()) collect(part, json::child_pointer(pointer, key), entries);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "base/text.hpp"
 #include "embedded_schemas.hpp"
@@ -58,12 +59,10 @@ std::vector<int> read_nodes(const SceneFields& fields, const Domain& domain) {
 
 /// The radius of a tube, which closes y and z; none: planes do, or nothing.
 std::optional<double> read_tube(const SceneFields& fields, const Domain& domain) {
-  if (!fields.has("/domain/walls")) {
-    fields.require("/domain", "y", "\"periodic\" or walls, or \"walls\" with a tube");
-    return std::nullopt;
-  }
+  if (!fields.has("/domain/walls")) fields.require("/domain", "y", "\"periodic\" or walls, or \"walls\"");
+  if (!fields.has("/domain/walls/tube")) return std::nullopt;
   if (domain.dimension() < 3) {
-    fields.refuse_key("/domain/walls",
+    fields.refuse_key("/domain/walls/tube",
                       "a tube has three dimensions, and this domain two\ngive size and nodes three numbers, or leave "
                       "walls out and close y");
   }
@@ -92,20 +91,25 @@ std::optional<double> read_tube(const SceneFields& fields, const Domain& domain)
 
 /// What is there between plane walls only, so far.
 void check_duct(const SceneFields& fields, const Scene& scene) {
-  if (scene.domain.tube_radius && !scene.fluid.layers.empty()) {
+  const bool shapes = scene.domain.has_shapes();
+  const std::string walls = shapes                     ? "between walls of any shape"
+                            : scene.domain.tube_radius ? "in a tube"
+                                                       : "in a duct";
+  if ((shapes || scene.domain.tube_radius) && !scene.fluid.layers.empty()) {
     fields.attempt([&] {
-      fields.refuse("/fluid/layers", "layers lie along plane walls, and this domain is a tube\nleave the layers out");
+      fields.refuse("/fluid/layers",
+                    "layers lie along plane walls; there are none " + walls + "\nleave the layers out");
     });
   }
   for (const Stage& stage : scene.stages) {
-    if (stage.start != WallStart::developed || !scene.domain.is_duct()) continue;
-    const char* const unknown = stage.oscillates()            ? "an oscillation settles to in "
-                                : !scene.fluid.layers.empty() ? "layers settle to in "
+    if (stage.start != WallStart::developed || !(shapes || scene.domain.is_duct())) continue;
+    const char* const unknown = stage.oscillates()            ? "an oscillation settles to"
+                                : !scene.fluid.layers.empty() ? "layers settle to"
+                                : shapes                      ? "develops"
                                                               : nullptr;
     if (unknown == nullptr) continue;
     fields.attempt([&] {
-      fields.refuse(stage.pointer + "/start", std::string("the flow that ") + unknown +
-                                                  (scene.domain.tube_radius ? "a tube" : "a duct") +
+      fields.refuse(stage.pointer + "/start", std::string("the flow that ") + unknown + ' ' + walls +
                                                   " is not known\nleave start out, and let the flow come to be");
     });
   }
@@ -151,6 +155,15 @@ void read_domain(const SceneFields& fields, Domain& domain) {
     domain.tube_radius = read_tube(fields, domain);
     if (domain.tube_radius) domain.periodic[2] = false;
   });
+  read_wall_shapes(fields, domain);
+  if (domain.tube_radius && domain.has_shapes()) {  // one among others
+    domain.within = WallShape{WallShape::Cylinder{.axis = 0,
+                                                  .center = {0.5 * domain.size[1], 0.5 * domain.size[2]},
+                                                  .radius = *std::exchange(domain.tube_radius, {}),
+                                                  .from = -std::numeric_limits<double>::infinity(),
+                                                  .to = std::numeric_limits<double>::infinity()},
+                              "/domain/walls/tube"};
+  }
 }
 
 /// In order of height; refuses layers that lie beyond the domain or on top of each other.
@@ -247,7 +260,7 @@ std::array<int, 2> read_between(const SceneFields& fields, const std::string& po
     if (fields.at(pointer + which) == self_name) return Interaction::self;
     if (fields.at(pointer + which) != wall_name)
       return fields.cell_type(pointer + which, types, {wall_name, self_name});
-    if (!domain.periodic[1]) return Interaction::wall;
+    if (!domain.periodic[1] || domain.has_shapes()) return Interaction::wall;
     fields.refuse(pointer + which,
                   "there is no wall, for domain.y is \"periodic\"\nwrite \"y\": {\"lower\": {\"wall\": {}}, "
                   "\"upper\": {\"wall\": {}}}, or leave this interaction out");

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
@@ -41,10 +42,11 @@ struct Domain {
   std::optional<WallShape> within = {};
   std::vector<WallShape> obstacles = {};
   /// What these leave to the fluid, by dimension, with images along periodic axes, in m; null: there are none. And its
-  /// area or volume, m2 or m3. Both made by shape::build_walls().
+  /// area or volume, m2 or m3. All made by shape::build_walls().
   core::RegionPointer<2> region_in_plane = {};
   core::RegionPointer<3> region_in_space = {};
   double region_content = 0;
+  double region_width = 0;  ///< twice the largest distance of a place in it to a wall, m
 
   [[nodiscard]] int dimension() const { return size.dimension(); }
   [[nodiscard]] const DimensionWords& words() const { return words_of(dimension()); }
@@ -63,15 +65,18 @@ struct Domain {
   [[nodiscard]] bool has_shapes() const { return within || !obstacles.empty(); }
   template <int D>
   [[nodiscard]] const core::RegionPointer<D>& region() const {
-    if constexpr (D == 2)
-      return region_in_plane;
-    else
-      return region_in_space;
+    return std::get<const core::RegionPointer<D>&>(std::tie(region_in_plane, region_in_space));
+  }
+  template <int D>
+  core::RegionPointer<D>& region() {
+    return std::get<core::RegionPointer<D>&>(std::tie(region_in_plane, region_in_space));
   }
   /// Whether walls close it along z, too.
   [[nodiscard]] bool is_duct() const { return !periodic[2]; }
-  /// From wall to wall along y or z, m.
-  [[nodiscard]] double across(int axis) const { return tube_radius ? 2 * *tube_radius : size[axis]; }
+  /// From wall to wall along y or z, m; at the widest place between walls of any shape.
+  [[nodiscard]] double across(int axis) const {
+    return tube_radius ? 2 * *tube_radius : has_shapes() ? region_width : size[axis];
+  }
 };
 
 /// A part of the suspending fluid that has another viscosity, between two heights.

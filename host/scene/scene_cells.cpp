@@ -185,11 +185,7 @@ class Placements {
     if (domain_.dimension() == 2 && is_known(domain_)) {
       fields_.refuse_key(pointer + "/axis", "in two dimensions cells turn in the plane\ngive \"angle\"");
     }
-    const auto written = fields_.value<std::array<double, 3>>(pointer + "/axis");
-    const Eigen::Vector3d direction(written[0], written[1], written[2]);
-    if (!(direction.norm() > 1e-9 && direction.norm() < 1e9))
-      fields_.refuse(pointer + "/axis", "this axis has no direction\ngive three numbers that are not all 0");
-    return direction.normalized();
+    return fields_.direction(pointer + "/axis");
   }
 
   [[nodiscard]] double angle(const std::string& pointer) const {

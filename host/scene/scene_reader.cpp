@@ -115,6 +115,14 @@ Vector SceneFields::place(const std::string& pointer, const Domain& domain, cons
   return read;
 }
 
+Eigen::Vector3d SceneFields::direction(const std::string& pointer) const {
+  const auto written = value<std::array<double, 3>>(pointer);
+  const Eigen::Vector3d direction(written[0], written[1], written[2]);
+  if (!(direction.norm() > 1e-9 && direction.norm() < 1e9))
+    refuse(pointer, "this axis has no direction\ngive three numbers that are not all 0");
+  return direction.normalized();
+}
+
 std::filesystem::path SceneFields::file(const std::string& pointer) const {
   const auto name = value<std::string>(pointer);
   if (name.find('\0') != std::string::npos) refuse(pointer, "a file's name cannot hold a NUL character");

@@ -91,6 +91,9 @@ class SceneFields {
   /// A place in the domain; refused where it has not a length along each axis. `what` is called so: "place".
   [[nodiscard]] Vector place(const std::string& pointer, const Domain& domain, const char* what = "place") const;
 
+  /// A unit vector; refused where its three numbers have no direction.
+  [[nodiscard]] Eigen::Vector3d direction(const std::string& pointer) const;
+
   /// How many elements or members the value has.
   [[nodiscard]] std::size_t count(const std::string& pointer) const;
   template <class T>
@@ -154,6 +157,9 @@ inline constexpr int most_nodes_of_side = 1 << 20;
 inline bool is_known(const Domain& domain) { return domain.size.is_finite() && domain.node_count() > 0; }
 
 /// The parts of a scene, each in a file of its own.
+/// Shapes that the fluid lies within and obstacles; which of the axes y and z are periodic then. The domain's size and
+/// nodes are read before.
+void read_wall_shapes(const SceneFields& fields, Domain& domain);
 std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity, const Domain& domain);
 /// Triangles with which the nodes of a surface lie about so far apart, m: 20 n^2. Not of a mesh, whose file has them.
 int triangles_about(const Shape& shape, double spacing);

@@ -20,7 +20,7 @@ void check_mean_velocity(const SceneFields& fields, const Stage& stage, const Sc
   if (walls_move(stage)) {
     fields.refuse_key(key, "a mean velocity is kept between walls at rest; leave it out, or shear_rate and walls");
   }
-  if (scene.domain.periodic[1]) {
+  if (scene.domain.periodic[1] && !scene.domain.has_shapes()) {
     fields.refuse_key(
         key,
         "a mean velocity is kept against walls, but domain.y is \"periodic\"\n"
@@ -63,10 +63,11 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
   }
   for (const char* key : {"shear_rate", "walls"}) {
     if (!fields.has(pointer + "/" + key)) continue;
-    if (scene.domain.tube_radius) {
-      fields.refuse_key(
-          pointer + "/" + key,
-          "the wall of a tube does not move\ngive pressure_gradient or mean_velocity in place of " + std::string(key));
+    if (scene.domain.tube_radius || scene.domain.has_shapes()) {
+      fields.refuse_key(pointer + "/" + key,
+                        std::string(scene.domain.tube_radius ? "the wall of a tube does not move"
+                                                             : "walls do not move where others are of any shape") +
+                            "\ngive pressure_gradient or mean_velocity in place of " + key);
     }
     if (!scene.domain.periodic[1]) continue;
     fields.refuse_key(pointer + "/" + key,

@@ -1,8 +1,10 @@
 // Shapes of walls, as a scene writes them.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -31,10 +33,11 @@ struct WallShape {
   };  ///< a closed polygon of x and y; in three dimensions between two heights along z
   struct Mesh {
     std::filesystem::path file;
-    double unit;      ///< m, of the file's coordinates
-    Vector at, axis;  ///< where the file's origin lies, and what its y axis is turned to
-    double angle;     ///< rad, then about that axis
-  };                  ///< closed triangles, of three dimensions
+    double unit;                          ///< m, of the file's coordinates
+    Vector at;                            ///< where the file's origin lies
+    double angle;                         ///< rad, about z, or about the axis
+    std::optional<Eigen::Vector3d> axis;  ///< unit vector that the file's y axis is turned to
+  };                                      ///< closed triangles, of three dimensions
   struct Image {
     std::vector<std::filesystem::path> files;  ///< one, or a stack along z
     double pixel, spacing;                     ///< m; `spacing` of a stack's pictures

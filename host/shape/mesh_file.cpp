@@ -65,7 +65,7 @@ std::string fault_of(const core::TriangleSurface& surface) {
 
 }  // namespace
 
-core::TriangleSurface read_mesh(const std::filesystem::path& file) {
+core::TriangleSurface read_triangles(const std::filesystem::path& file) {
   std::string text = read_input(file, largest_input);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   const bool old_ends = text.find('\n') == std::string::npos && text.find('\0') == std::string::npos;  // of lines
@@ -76,17 +76,37 @@ core::TriangleSurface read_mesh(const std::filesystem::path& file) {
   const auto refuse = [&](const std::string& problem) {
     throw Error(Cause::bad_input, rouleau::Place{file.string()}, problem);
   };
-  Eigen::AlignedBox3d box;
-  for (std::size_t i = 0; i < surface.nodes.size(); ++i) {
+  const int nodes = static_cast<int>(surface.nodes.size());
+  for (int i = 0; i < nodes; ++i) {
     if (!surface.nodes[i].allFinite())
       refuse("node " + std::to_string(i) + " has a coordinate that is no finite number");
-    box.extend(surface.nodes[i]);
+  }
+  for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+    for (const int node : surface.triangles[i]) {
+      if (node < 0 || node >= nodes)
+        refuse("triangle " + std::to_string(i) + " has the node " + std::to_string(node) + ", and there are " +
+               std::to_string(nodes));
+    }
   }
   if (read == read_stl_text || read == read_stl_binary) weld(surface, 0);
+  return surface;
+}
+
+double weld_reach(const core::TriangleSurface& surface) {
+  Eigen::AlignedBox3d box;
+  for (const core::Vec<3>& node : surface.nodes) box.extend(node);
+  return surface.nodes.empty() ? 0 : weld_distance * box.sizes().maxCoeff();
+}
+
+core::TriangleSurface read_mesh(const std::filesystem::path& file) {
+  core::TriangleSurface surface = read_triangles(file);
+  const auto refuse = [&](const std::string& problem) {
+    throw Error(Cause::bad_input, rouleau::Place{file.string()}, problem);
+  };
   std::string fault = fault_of(surface);
   if (fault.empty()) return surface;
   try {
-    const double distance = surface.nodes.empty() ? 0 : weld_distance * box.sizes().maxCoeff();
+    const double distance = weld_reach(surface);
     const int joined = weld(surface, distance);
     if (joined == 0) refuse(fault);
     fault = fault_of(surface);
@@ -96,7 +116,8 @@ core::TriangleSurface read_mesh(const std::filesystem::path& file) {
   } catch (const std::invalid_argument& error) {
     fault = error.what();
   }
-  throw Error(Cause::bad_input, rouleau::Place{file.string()}, fault);
+  refuse(fault);
+  return surface;
 }
 
 }  // namespace rouleau::shape

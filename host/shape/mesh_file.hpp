@@ -11,6 +11,12 @@ namespace rouleau::shape {
 /// few units in the last of seven digits. Edges of a million even triangles are a hundred times longer.
 inline constexpr double weld_distance = 1e-5;
 
+/// What a file says, closed or not; of STL corners at the same place are one node. Nodes of triangles are there, and
+/// finite. Throws what InputFile does, and Error(bad_input).
+core::TriangleSurface read_triangles(const std::filesystem::path& file);
+/// Nodes of a surface that are no farther apart are one, where it is not closed otherwise.
+double weld_reach(const core::TriangleSurface& surface);
+
 /// Coordinates are in the file's own unit. Faces of more corners are cut into triangles. The format follows from how
 /// the file begins: OFF in text (also COFF, NOFF, STOFF), OBJ, PLY in text or binary, STL in text or binary, of which
 /// corners at the same place are one node; the name's end tells OBJ that begins with something else. A mesh that is not

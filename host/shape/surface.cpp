@@ -34,11 +34,11 @@ TriangleSurface make_surface(const scene::CellType& type) {
   return core::ellipsoid(n, Vec<3>::Constant(std::get<scene::Sphere>(type.shape).radius));
 }
 
-Eigen::Matrix3d rotation_of(const scene::CellPlacement& cell) {
+Eigen::Matrix3d rotation_of(const std::optional<Eigen::Vector3d>& axis, double angle) {
   using Eigen::AngleAxisd, Eigen::Vector3d;
-  if (!cell.axis) return AngleAxisd(cell.angle, Vector3d::UnitZ()).toRotationMatrix();
-  const Eigen::Quaterniond turned = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitY(), *cell.axis);
-  return (turned * AngleAxisd(cell.angle, Vector3d::UnitY())).toRotationMatrix();
+  if (!axis) return AngleAxisd(angle, Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Quaterniond turned = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitY(), *axis);
+  return (turned * AngleAxisd(angle, Vector3d::UnitY())).toRotationMatrix();
 }
 
 }  // namespace rouleau::shape

@@ -71,11 +71,12 @@ std::string fingerprint(const Json& scene, const fs::path& scene_file, const std
     all["plugins"].push_back({plugin.id, plugin.library_sha256, plugin.manifest_sha256});
   }
   for (const std::string& entry : scene::entries_with_files(scene)) {
-    const std::string name = scene.at(Json::json_pointer(entry + "/file"));
-    const fs::path file = fs::absolute(scene_file).parent_path() / name;
-    std::error_code ignored;
-    if (fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) <= largest_named)
-      all["files"].push_back(sha256(file));
+    scene::each_text(scene.at(Json::json_pointer(entry + "/file")), [&](const Json& name) {
+      const fs::path file = fs::absolute(scene_file).parent_path() / name.get<std::string>();
+      std::error_code ignored;
+      if (fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) <= largest_named)
+        all["files"].push_back(sha256(file));
+    });
   }
   const fs::path lock = plugin::lock_beside(scene_file);
   if (fs::exists(lock)) all["lock"] = sha256(lock);

@@ -44,8 +44,9 @@ nlohmann::json moved_scene(const Trial& trial) {
   nlohmann::json scene = trial.scene;
   const fs::path folder = fs::absolute(trial.scene_file).parent_path();
   for (const std::string& entry : scene::entries_with_files(scene)) {
-    auto& file = scene.at(nlohmann::json::json_pointer(entry + "/file"));
-    file = (folder / file.get<std::string>()).lexically_normal().string();
+    scene::each_text(scene.at(nlohmann::json::json_pointer(entry + "/file")), [&](nlohmann::json& file) {
+      file = (folder / file.get<std::string>()).lexically_normal().string();
+    });
   }
   if (!scene.is_object() || !scene.contains("plugin_dirs") || !scene["plugin_dirs"].is_array()) return scene;
   for (auto& entry : scene["plugin_dirs"]) {

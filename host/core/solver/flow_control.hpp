@@ -16,10 +16,10 @@ namespace rouleau::core {
 class FlowControl {
  public:
   /// `guess`: the force that would do without cells.
-  FlowControl(double mean_velocity, double guess, double viscosity, int height)
+  FlowControl(double mean_velocity, double guess, double viscosity, double height)
       : wanted_(mean_velocity),
-        interval_(std::max(1L, static_cast<long>(static_cast<double>(height) * height /
-                                                 (std::numbers::pi * std::numbers::pi * viscosity) / looks))),
+        interval_(std::max(
+            1L, static_cast<long>(height * height / (std::numbers::pi * std::numbers::pi * viscosity) / looks))),
         state_{.force = guess, .last = {}} {}
 
   /// What it remembers from one look to the next.

@@ -121,8 +121,9 @@ Solver<T, Set>::Solver(Setup setup, Cells& cells, const Ranks<dimension>& ranks,
     cell_tasks_ = std::make_unique<CellTasks>(setup_, cells_, fluid_, std::move(ghosts));
   }
   if (setup_.mean_velocity != 0) {
-    if (!setup_.domain.walled(1)) throw std::invalid_argument("a mean velocity is kept between walls");
-    flow_control_.emplace(setup_.mean_velocity, setup_.body_force_x, channel_viscosity(setup_), setup_.domain.size[1]);
+    if (!setup_.domain.walled(1) && !setup_.solid) throw std::invalid_argument("a mean velocity is kept between walls");
+    flow_control_.emplace(setup_.mean_velocity, setup_.body_force_x, channel_viscosity(setup_),
+                          setup_.width > 0 ? setup_.width : setup_.domain.size[1]);
   }
   make_passes();
 }

@@ -37,6 +37,8 @@ struct BasicSolverSetup {
   std::shared_ptr<const SolidNodes<D>> solid = {};
   /// Area of their walls, in two dimensions length, that the mean stress on them is of; 0: not known.
   double wall_area = 0;
+  /// From wall to wall at the widest place, which a mean velocity is kept by; 0: the domain's height.
+  double width = 0;
   /// Relaxation time of the suspending fluid in time steps; its kinematic viscosity is (tau - 1/2)/3.
   double tau = 1;
   /// Parts of the suspending fluid with another viscosity, which do not move. With cells, neither the semi-implicit
