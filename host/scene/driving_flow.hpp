@@ -8,8 +8,8 @@ namespace rouleau::scene {
 /// Whether the walls move in a stage.
 bool walls_move(const Stage& stage);
 
-/// Force per volume that drives the fluid in a stage, N/m3; for a mean velocity what it would take without cells, between
-/// walls of any shape in a channel as wide as they are at most.
+/// Force per volume that drives the fluid in a stage, N/m3; for a mean velocity what it would take without cells (for
+/// walls of any shape: in a channel that is everywhere as wide as they are at the widest place).
 Vector driving_force(const Stage& stage, const Scene& scene);
 
 /// Whether walls hold the fluid, across y or z.

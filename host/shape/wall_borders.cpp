@@ -105,11 +105,10 @@ void require_reach(const scene::SceneFields& fields, const std::string& pointer,
                    double to, double unit) {
   if (from >= -0.5 - period * (1 + rounding) && to <= 2 * period - 0.5 + period * rounding) return;
   const auto um = [&](double place) { return number((place + 0.5) * unit * 1e6) + " um"; };
-  fields.refuse(
-      pointer,
-      "it reaches from " + um(from) + " to " + um(to) + " along " + axis_name(axis) +
-          ", where the domain is periodic and " + um(period - 0.5) +
-          " long\nlet it end within one period of the domain, at 0 um and the domain's end if it goes through");
+  fields.refuse(pointer, "it reaches from " + um(from) + " to " + um(to) + " along " + axis_name(axis) +
+                             ", where the domain is periodic and " + um(period - 0.5) +
+                             " long\nlet it end within one period of the domain, at 0 um and the domain's "
+                             "end if it goes through");
 }
 
 namespace {
@@ -193,7 +192,7 @@ Samples<D> samples_of(const scene::SceneFields& fields, const std::string& point
     if (picture.light.size() > most || picture.light.size() * image.files.size() > most)
       fields.refuse(
           pointer + "/file",
-          "the pictures have more than 5 10^7 pixels together\nmake them smaller; a wall is as fine as the lattice at most");
+          "the pictures have more than 5 10^7 pixels together\nmake them smaller; the lattice is as coarse anyway");
     for (const double light : picture.light) samples.values.push_back(image.light ? light - 0.5 : 0.5 - light);
   }
   return samples;

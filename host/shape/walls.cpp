@@ -259,13 +259,13 @@ void build(scene::Domain& domain, const scene::SceneFields& fields, RegionPointe
   const std::string pointer = domain.within ? domain.within->pointer : "/domain/obstacles";
   const Measure<D> measured(*fluid, builder.domain());
   if (!(measured.content > 0))
-    fields.refuse(
-        pointer,
-        "these walls leave no fluid in the domain\nmove or turn them; lengths are those of the domain, from its lower corner");
+    fields.refuse(pointer,
+                  "these walls leave no fluid in the domain\nmove or turn them; lengths "
+                  "are those of the domain, from its lower corner");
   if (!std::isfinite(measured.width))
-    fields.refuse(
-        pointer,
-        "these shapes leave no wall in the domain, and there are none across y or z\nleave them out, or make them smaller than the domain");
+    fields.refuse(pointer,
+                  "these shapes leave no wall in the domain, and there are none across y "
+                  "or z\nleave them out, or make them smaller than the domain");
   domain.region_content = measured.content * std::pow(unit, D);
   domain.region_width = measured.width * unit;
   region = core::magnified<D>(fluid, unit, Vec<D>::Constant(0.5 * unit));

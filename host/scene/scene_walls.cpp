@@ -1,5 +1,4 @@
-#include "wall_shape.hpp"
-
+// Shapes of walls: what the scene says of them.
 #include <algorithm>
 #include <cmath>
 #include <limits>
