@@ -87,6 +87,21 @@ void add_lengths(const scene::Scene& scene, Rows& rows) {
                  scene.domain.size[axis], "m", units::dimension::length);
   if (scene.domain.tube_radius)
     rows.convert("radius of the tube", *scene.domain.tube_radius, "m", units::dimension::length);
+  if (const scene::Domain& domain = scene.domain; domain.has_shapes()) {
+    const auto share = domain.content() / domain.size.product();
+    rows.add("share of the domain that is fluid", share, "1", share);
+    rows.convert("widest place between the walls", domain.region_width, "m", units::dimension::length);
+    for (const int end : {0, 1}) {
+      if (!domain.passages) break;
+      const double open = domain.passages->open[end],
+                   unit = std::pow(scene::lattice_spacing(scene), domain.dimension() - 1);
+      rows.add(std::string("open at the ") + (end == 0 ? "lower" : "upper") + " end along x", open,
+               domain.in_plane() ? "m" : "m2", open / unit);
+    }
+    if (domain.passages && std::isfinite(domain.passages->narrowest))
+      rows.convert("narrowest passage", domain.passages->narrowest * scene::lattice_spacing(scene), "m",
+                   units::dimension::length);
+  }
   for (const scene::CellType& type : scene.cell_types) {
     rows.convert("radius", shape::shape_radius(type.shape), "m", units::dimension::length, type.name);
     rows.convert("interior viscosity", type.interior_viscosity, "Pa s", units::dimension::viscosity, type.name);

@@ -59,11 +59,21 @@ void add_mach_numbers(const LimitedStage& of, LimitList& limits) {
   }
 }
 
+std::string micrometres(const scene::Vector& place) { return '(' + scene::by_axes(place, 1e6, 5, " um", ", ") + ')'; }
+
 void add_tube(const LimitedStage& of, LimitList& limits) {
   if (!of.scene.domain.tube_radius) return;
   limits.above(
       "radius of the tube in lattice spacings", *of.scene.domain.tube_radius / of.stage.units.length, least_tube_radius,
       "raise the resolution: the flow rate is off by up to 0.65 over the square of the radius", RemediedBy::resolution);
+}
+
+void add_passages(const LimitedStage& of, LimitList& limits) {
+  if (!of.scene.domain.passages) return;
+  const scene::Passages& passages = *of.scene.domain.passages;
+  limits.above("narrowest passage between walls in lattice spacings, at " + micrometres(passages.narrowest_at),
+               passages.narrowest, narrowest_passage,
+               "raise the resolution: the flow through it is off by several per cent", RemediedBy::resolution);
 }
 
 void add_oscillation(const LimitedStage& of, LimitList& limits) {
@@ -123,6 +133,7 @@ struct StageLimits {
 constexpr std::array stage_limits{
     StageLimits{add_mach_numbers},
     StageLimits{.add = add_tube, .of_first_stage = true},
+    StageLimits{.add = add_passages, .of_first_stage = true},
     StageLimits{add_oscillation},
     StageLimits{add_start},
     StageLimits{.add = add_compression, .of_cells = true},

@@ -111,7 +111,8 @@ std::vector<scene::LatticeSize> NumericsProblem::lattices() const {
   const scene::LatticeSize coarsest = *scene::coarsest_lattice(scene_.domain.size);  // the draft has found one
   // Beyond the finest lattice the plan's limits may be exceeded, and it warns.
   const double of_cells = std::min(std::max(bounds_.least_radius, least_radii(scene_, coupling_).run), finest_radius);
-  const double least = has_cells_ ? of_cells : fewest_rows / 2.0;
+  const double least =
+      has_cells_ ? of_cells : std::min(std::max(bounds_.least_radius, fewest_rows / 2.0), finest_radius);
   std::vector<scene::LatticeSize> found;
   scene::LatticeSize finest = coarsest;
   for (int factor = 1;; ++factor) {

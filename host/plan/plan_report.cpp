@@ -174,6 +174,19 @@ bool is_shared(const scene::Scene& scene, double border) {
   });
 }
 
+/// Of walls of any shape.
+void add_wall_warnings(const scene::Domain& domain, std::vector<std::string>& warnings) {
+  if (const auto& passages = domain.passages; passages && passages->apart > 0)
+    warnings.push_back(number(passages->apart, 12) +
+                       " nodes of fluid have no way to most others, such as the one at (" +
+                       scene::by_axes(passages->apart_at, 1e6, 5, " um", ", ") +
+                       "); they are computed, and mean values count them. Close them with an obstacle, or open a way");
+  if (domain.has_shapes() && !domain.passages)
+    warnings.push_back(
+        "the lattice is too large to look for narrow or closed passages between its walls; try a coarser "
+        "one first");
+}
+
 /// What the user has to know before the run.
 std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>& limits,
                                      const std::vector<InteractionWell>& wells) {
@@ -204,6 +217,7 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
                        std::to_string(scene::most_nodes_of_block) + "; start the run on " + std::to_string(ranks) +
                        " ranks or more (docs/ranks.md)");
   }
+  add_wall_warnings(scene.domain, warnings);
   const double spacing = scene::lattice_spacing(scene);
   for (const scene::FluidLayer& layer : scene.fluid.layers) {
     for (const double border : {layer.from, layer.to}) {

@@ -11,10 +11,12 @@
 #include "limits.hpp"
 #include "numerics_auto.hpp"
 #include "plan.hpp"
+#include "scene/driving_flow.hpp"
 #include "scene/named_files.hpp"
 #include "scene/read_scene.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
+#include "shape/passages.hpp"
 #include "shape/random_cells.hpp"
 
 namespace rouleau::plan {
@@ -48,7 +50,9 @@ NumericsBounds tightened(NumericsBounds bounds, const Plan& plan) {
               : bounds.most_density_factor.try_emplace(stage, kept).first->second;
       most = std::min(most, kept);
     } else if (limit.remedied_by == RemediedBy::resolution) {
-      const double radius = shape::smallest_radius(*plan.scene) / scene::lattice_spacing(*plan.scene);
+      const double of_cells = shape::smallest_radius(*plan.scene);
+      const double radius =
+          (of_cells > 0 ? of_cells : plan.scene->domain.across(1) / 2) / scene::lattice_spacing(*plan.scene);
       bounds.least_radius = std::max(bounds.least_radius, radius / limit.margin);
     }
   }
@@ -99,14 +103,44 @@ OpenScene read_file(const std::filesystem::path& file, const std::vector<std::st
   return {std::move(document), faults};
 }
 
-/// The scene with all values. Faults are added; with some, it is what could be read.
-ReadScene completed(const OpenScene& open, const NumericsBounds& bounds, Faults& faults) {
+/// The scene with all values. Faults are added; with some, it is what could be read. `former`: what was read with other
+/// bounds, or null.
+ReadScene completed(const OpenScene& open, const NumericsBounds& bounds, Faults& faults,
+                    const ReadScene* former = nullptr) {
   std::optional<NumericsChoice> choice;
   auto document = std::make_shared<json::Document>(open.filled_in(bounds, choice));
   ReadScene read{scene::read_scene(std::move(document), faults), std::move(choice)};
   if (faults.empty()) open.build_walls(read.scene, faults);
+  if (faults.empty()) {
+    const bool same = former != nullptr && former->scene.domain.nodes == read.scene.domain.nodes;
+    shape::survey_walls(read.scene, same ? former->scene.domain.passages : nullptr);
+  }
   if (faults.empty()) faults.attempt([&] { shape::add_random_cells(read.scene); });
   return read;
+}
+
+/// Refuses passages that the lattice does not resolve, and a flow along x that finds no way.
+void require_passages(const scene::Scene& scene) {
+  if (!scene.domain.passages) return;
+  const scene::Passages& passages = *scene.domain.passages;
+  const std::string pointer = scene.domain.within ? scene.domain.within->pointer : "/domain/obstacles";
+  const auto refuse = [&](const std::string& problem, const std::string& remedy) {
+    throw Error(Cause::bad_input, scene.place(pointer), problem, {remedy});
+  };
+  if (passages.narrowest < least_passage) {
+    const double finer = std::ceil(narrowest_passage / passages.narrowest * scene.domain.nodes[0]);
+    refuse("between walls at (" + scene::by_axes(passages.narrowest_at, 1e6, 5, " um", ", ") + ") a passage is " +
+               number(passages.narrowest, 3) + " lattice spacings wide, and below " + number(least_passage) +
+               " its flow is not resolved",
+           "take " + number(finer, 12) +
+               " nodes along x and as many more along the others, close the passage, or widen it");
+  }
+  const auto drives = [&](const scene::Stage& stage) {
+    return scene::driving_force(stage, scene).x() != 0 || stage.oscillates();
+  };
+  if (!passages.through_x && std::any_of(scene.stages.begin(), scene.stages.end(), drives))
+    refuse("a flow is driven along x, and these walls leave no way through the domain from one end to the other",
+           "open a way, or leave out what drives the flow");
 }
 
 }  // namespace
@@ -115,6 +149,7 @@ ReadScene read_unpacked_scene(const std::filesystem::path& file, const std::vect
   Faults faults;
   ReadScene read = completed(read_file(file, overrides, faults), {}, faults);
   faults.raise();
+  require_passages(read.scene);
   return read;
 }
 
@@ -136,6 +171,7 @@ ReadScene read_within_limits(const std::filesystem::path& file, const std::vecto
     faults.raise();
   }
   if (!read.numerics_choice) {
+    require_passages(read.scene);
     shape::pack_cells(read.scene, watch);
     return read;
   }
@@ -144,12 +180,13 @@ ReadScene read_within_limits(const std::filesystem::path& file, const std::vecto
     const NumericsBounds tighter = tightened(bounds, make_plan(read.scene, catalog, read.numerics_choice));
     if (tighter == bounds) return false;
     bounds = tighter;
-    read = completed(open, bounds, faults);
+    read = completed(open, bounds, faults, &read);
     faults.raise();
     return true;
   };
   for (int packed = 0; packed < most_packings; ++packed) {
     for (int tries = 0; tries < most_tries && tighten(); ++tries) continue;
+    require_passages(read.scene);
     shape::pack_cells(read.scene, watch);
     // Where they lie they may exceed a limit that cells anywhere do not.
     if (read.scene.packings.empty() || packed + 1 == most_packings || !tighten()) break;

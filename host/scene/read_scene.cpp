@@ -61,7 +61,7 @@ std::vector<int> read_nodes(const SceneFields& fields, const Domain& domain) {
 std::optional<double> read_tube(const SceneFields& fields, const Domain& domain) {
   if (!fields.has("/domain/walls")) fields.require("/domain", "y", "\"periodic\" or walls, or \"walls\"");
   if (!fields.has("/domain/walls/tube")) return std::nullopt;
-  if (domain.dimension() < 3) {
+  if (domain.in_plane()) {
     fields.refuse_key("/domain/walls/tube",
                       "a tube has three dimensions, and this domain two\ngive size and nodes three numbers, or leave "
                       "walls out and close y");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -31,6 +32,17 @@ struct ModelChoice {
   std::string pointer;        ///< JSON pointer of the object that names the model
 };
 
+/// What the lattice makes of the fluid between walls of any shape.
+struct Passages {
+  double narrowest =
+      std::numeric_limits<double>::infinity();  ///< from wall to wall, spacings; infinite: none is narrow
+  Vector narrowest_at = {};                     ///< m
+  double apart = 0;                             ///< nodes that no way leads to from most others
+  Vector apart_at = {};                         ///< one of them, m
+  bool through_x = true;                        ///< whether a way leads through a period along x
+  std::array<double, 2> open = {};  ///< m2, or m in two dimensions, at the lower end along x and the upper one
+};
+
 struct Domain {
   Vector size{0, 0};                ///< m, along two axes or three
   std::vector<int> nodes = {0, 0};  ///< of the lattice along each axis; the spacing is the same along all
@@ -46,9 +58,11 @@ struct Domain {
   core::RegionPointer<2> region_in_plane = {};
   core::RegionPointer<3> region_in_space = {};
   double region_content = 0;
-  double region_width = 0;  ///< twice the largest distance of a place in it to a wall, m
+  std::shared_ptr<const Passages> passages = {};  ///< made by shape::survey_walls(); null: not looked for
+  double region_width = 0;                        ///< twice the largest distance of a place in it to a wall, m
 
   [[nodiscard]] int dimension() const { return size.dimension(); }
+  [[nodiscard]] bool in_plane() const { return dimension() < 3; }
   [[nodiscard]] const DimensionWords& words() const { return words_of(dimension()); }
   /// Of the whole lattice.
   [[nodiscard]] double node_count() const {

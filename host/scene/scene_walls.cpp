@@ -69,8 +69,6 @@ class ShapeReader {
   }
 
  private:
-  [[nodiscard]] bool in_plane() const { return domain_.dimension() < 3; }
-
   /// Of a length that may be left out.
   [[nodiscard]] double end(const std::string& pointer, double otherwise) const {
     return fields_.quantity_or(pointer, "m", range::place, otherwise);
@@ -95,7 +93,7 @@ class ShapeReader {
   }
 
   [[nodiscard]] WallShape::Cylinder cylinder(const std::string& pointer) const {
-    if (in_plane())
+    if (domain_.in_plane())
       fields_.refuse_key(pointer, "a cylinder has three dimensions, and the domain two\ntake \"sphere\", here a disc");
     const auto axis = static_cast<int>(fields_.value<std::string>(pointer + "/axis")[0] - axis_names[0]);
     const Vector center = fields_.quantities(pointer + "/center", "m", range::place, 2);
@@ -110,7 +108,7 @@ class ShapeReader {
 
   [[nodiscard]] WallShape::Outline outline(const std::string& pointer) const {
     for (const char* key : {"/lower", "/upper"}) {
-      if (in_plane() && fields_.has(pointer + key))
+      if (domain_.in_plane() && fields_.has(pointer + key))
         fields_.refuse_key(pointer + key, "there is no z in two dimensions\nleave this out");
     }
     WallShape::Outline outline{{}, end(pointer + "/lower", -endless), end(pointer + "/upper", endless)};
@@ -175,7 +173,7 @@ class ShapeReader {
   }
 
   [[nodiscard]] WallShape::Mesh mesh(const std::string& pointer) const {
-    if (in_plane())
+    if (domain_.in_plane())
       fields_.refuse_key(pointer,
                          "a mesh has three dimensions, and the domain two\ntake an outline, or give size and nodes "
                          "three numbers");
@@ -197,7 +195,7 @@ class ShapeReader {
                            0,
                            (fields_.value_or(pointer + "/fluid", std::string("light")) == "light") == inside_is_fluid,
                            Vector::filled(domain_.dimension(), 0)};
-    if (stack && in_plane())
+    if (stack && domain_.in_plane())
       fields_.refuse(files, "a stack of pictures has three dimensions, and the domain two\nname one file");
     for (std::size_t i = 0; stack && i < fields_.count(files); ++i)
       image.files.push_back(fields_.file(json::child_pointer(files, i)));

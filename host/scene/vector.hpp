@@ -83,9 +83,10 @@ class Vector {
 
 /// "10 um x 20 um" of lengths, "10 x 20" of numbers of nodes; each times `factor`.
 template <class Numbers>
-std::string by_axes(const Numbers& numbers, double factor = 1, int digits = 12, const char* unit = "") {
+std::string by_axes(const Numbers& numbers, double factor = 1, int digits = 12, const char* unit = "",
+                    const char* between = " x ") {
   std::string text;
-  for (const auto one : numbers) text += (text.empty() ? "" : " x ") + number(one * factor, digits) + unit;
+  for (const auto one : numbers) text += (text.empty() ? "" : between) + number(one * factor, digits) + unit;
   return text;
 }
 

@@ -1,0 +1,262 @@
+#include "passages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+
+#include "core/geometry/formulas.hpp"
+#include "core/geometry/region.hpp"
+#include "scene/lattice.hpp"
+#include "units/lattice_units.hpp"
+
+namespace rouleau::shape {
+
+namespace {
+
+using core::Vec;
+
+/// Runs of fluid nodes along x, joined to those beside them; each knows how many periods it lies from its parent.
+class Pools {
+ public:
+  int add(double nodes) {
+    runs_.push_back({static_cast<int>(runs_.size()), 0, nodes, false});
+    return static_cast<int>(runs_.size()) - 1;
+  }
+  /// Run b with run a, where a way from a to b goes over `periods` ends of the domain.
+  void join(int a, int b, int periods) {
+    const auto [of_a, at_a] = root(a);
+    const auto [of_b, at_b] = root(b);
+    if (of_a == of_b) {
+      runs_[of_a].goes_on = runs_[of_a].goes_on || at_b != at_a + periods;
+      return;
+    }
+    const auto [kept, gone] = std::minmax(of_a, of_b);
+    const int way = at_a + periods - at_b;  // from the root of a to that of b
+    runs_[gone].parent = kept;
+    runs_[gone].periods = kept == of_a ? way : -way;
+    runs_[kept].nodes += runs_[gone].nodes;
+    runs_[kept].goes_on = runs_[kept].goes_on || runs_[gone].goes_on;
+  }
+  /// First run of a pool, and how many periods it is from there.
+  std::pair<int, int> root(int run) {
+    int last = run, all = 0;
+    for (; runs_[last].parent != last; last = runs_[last].parent) all += runs_[last].periods;
+    for (int at = run, left = all; runs_[at].parent != at;) {
+      const int next = runs_[at].parent, periods = runs_[at].periods;
+      runs_[at].parent = last, runs_[at].periods = left;
+      left -= periods, at = next;
+    }
+    return {last, all};
+  }
+  [[nodiscard]] int count() const { return static_cast<int>(runs_.size()); }
+  [[nodiscard]] double nodes(int root) const { return runs_[root].nodes; }
+  [[nodiscard]] bool goes_on(int root) const { return runs_[root].goes_on; }
+
+ private:
+  struct Run {
+    int parent, periods;
+    double nodes;
+    bool goes_on;  ///< of a pool: it comes again after a period
+  };
+  std::vector<Run> runs_;
+};
+
+template <int D>
+class Survey {
+  using Node = std::array<int, D>;
+
+ public:
+  Survey(core::RegionPointer<D> region, const core::Domain<D>& domain)
+      : domain_(domain), region_(core::intersection<D>({std::move(region), core::between_walls(domain)})) {
+    long below = 1;
+    for (int k = 0; k < D; ++k) stride_[k] = std::exchange(below, below * domain.size[k]);
+    layer_.resize(stride_[D - 1]);
+    for (Node node{}; node[D - 1] < domain.size[D - 1]; ++node[D - 1]) add_layer(node[D - 1]);
+    if (domain.periodic[D - 1]) {
+      std::swap(layer_, last_layer_);
+      layer_ = first_layer_;
+      join_layers(domain.size[D - 1] - 1);
+    }
+  }
+
+  /// Between walls that face each other, where the way neither widens on one side alone nor ends.
+  [[nodiscard]] std::pair<double, long> narrowest() const {
+    std::pair<double, long> least{std::numeric_limits<double>::infinity(), -1};
+    for (const auto& [node, ridge] : ridges_) {
+      if (ridge.width > 0 && std::pair(ridge.width, node) < least && leads_on(node, ridge)) least = {ridge.width, node};
+    }
+    return least;
+  }
+  [[nodiscard]] Node node_of(long number) const {
+    Node node;
+    for (int k = 0; k < D; number /= domain_.size[k++]) node[k] = static_cast<int>(number % domain_.size[k]);
+    return node;
+  }
+  Pools pools;
+  std::vector<long> first_of_run;         ///< nodes
+  std::array<double, 2> open_nodes = {};  ///< at both ends along x
+
+ private:
+  struct Place {
+    double value;
+    Vec<D> gradient;
+  };
+  /// Between two nodes, of which one is nearest to one wall and the other to another one across.
+  struct Ridge {
+    double width;
+    Vec<D> across;
+  };
+  using Runs = std::vector<std::array<int, 3>>;  ///< first node, behind the last, number among pools
+
+  void add_layer(int level) {
+    std::swap(layer_, last_layer_);
+    layer_.resize(stride_[D - 1]);
+    std::swap(rows_, last_rows_);
+    rows_.assign(stride_[D - 1] / domain_.size[0], {});
+    for (long i = 0; i < stride_[D - 1]; ++i) {
+      Node node = node_of(i);
+      node[D - 1] = level;
+      Vec<D> place;
+      for (int k = 0; k < D; ++k) place[k] = node[k];
+      const core::Distance<D> found = region_->distance(place);
+      layer_[i] = {found.value, found.gradient};
+    }
+    for (long row = 0; row < static_cast<long>(rows_.size()); ++row) add_row(row, level);
+    for (int k = 0; k + 1 < D; ++k) join_along(k, level);
+    if (level > 0) join_layers(level - 1);
+    if (level == 0) first_layer_ = layer_, first_rows_ = rows_;
+  }
+
+  void add_row(long row, int level) {
+    const int size = domain_.size[0];
+    const auto is_fluid = [&](int x) { return layer_[row * size + x].value > 0; };
+    for (int x = 0; x < size; ++x) {
+      if (!is_fluid(x)) continue;
+      const int begin = x;
+      while (x < size && is_fluid(x)) ++x;
+      first_of_run.push_back(level * stride_[D - 1] + row * size + begin);
+      rows_[row].push_back({begin, x, pools.add(x - begin)});
+    }
+    open_nodes[0] += is_fluid(0) ? 1 : 0;
+    open_nodes[1] += is_fluid(size - 1) ? 1 : 0;
+    if (!rows_[row].empty() && is_fluid(0) && is_fluid(size - 1))
+      pools.join(rows_[row].back()[2], rows_[row].front()[2], 1);
+  }
+
+  void join_rows(const Runs& a, const Runs& b) {
+    for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+      if (a[i][0] < b[j][1] && b[j][0] < a[i][1]) pools.join(a[i][2], b[j][2], 0);
+      ++(a[i][1] < b[j][1] ? i : j);
+    }
+  }
+
+  /// Within the layer.
+  void join_along(int axis, int level) {
+    for (long i = 0; i < stride_[D - 1]; ++i) {
+      const long at = i / stride_[axis] % domain_.size[axis];
+      const bool last = at + 1 == domain_.size[axis];
+      if (last && !domain_.periodic[axis]) continue;
+      const long next = last ? i - at * stride_[axis] : i + stride_[axis];
+      add_ridge(level * stride_[D - 1] + i, layer_[i], layer_[next], axis);
+      if (axis > 0 && i % domain_.size[0] == 0) join_rows(rows_[i / domain_.size[0]], rows_[next / domain_.size[0]]);
+    }
+  }
+
+  /// The last layer, at a level, with this one.
+  void join_layers(int level) {
+    const std::vector<Runs>& rows = level + 1 == domain_.size[D - 1] ? first_rows_ : rows_;
+    const std::vector<Runs>& below = level + 1 == domain_.size[D - 1] ? rows_ : last_rows_;
+    for (long i = 0; i < stride_[D - 1]; ++i) add_ridge(level * stride_[D - 1] + i, last_layer_[i], layer_[i], D - 1);
+    for (std::size_t row = 0; row < rows.size(); ++row) join_rows(below[row], rows[row]);
+  }
+
+  void add_ridge(long node, const Place& a, const Place& b, int axis) {
+    constexpr double facing = -0.8;  // of walls at less than 37 degrees
+    if (!(a.gradient.dot(b.gradient) < facing)) return;
+    const Vec<D> across = (a.gradient - b.gradient) / 2;
+    const double width = a.value + b.value + across[axis];
+    if (across[axis] <= 0 || width > widest_told) return;
+    const auto [known, is_new] = ridges_.try_emplace(node, Ridge{width, across.normalized()});
+    if (!is_new && width < known->second.width) known->second = {width, across.normalized()};
+  }
+
+  [[nodiscard]] bool leads_on(long number, const Ridge& ridge) const {
+    constexpr double even = 0.995, aside = 0.7;
+    const Node node = node_of(number);
+    std::vector<Vec<D>> ways;
+    int count = 1;
+    for (int k = 0; k < D; ++k) count *= 3;
+    for (int i = 0; i < count; ++i) {
+      Vec<D> way;
+      long there = 0;
+      for (int k = 0, rest = i; k < D; ++k, rest /= 3) {
+        way[k] = rest % 3 - 1;
+        const int to = domain_.wrapped(k, node[k] + rest % 3 - 1);
+        there = to < 0 || there < 0 ? -1 : there + to * stride_[k];
+      }
+      if (there < 0 || !(std::abs(way.dot(ridge.across)) < aside * way.norm())) continue;
+      const auto beside = ridges_.find(there);
+      if (beside == ridges_.end()) continue;
+      if (beside->second.width < even * ridge.width) return false;
+      ways.push_back(way.normalized());
+    }
+    return !ways.empty() && std::ranges::all_of(ways, [&](const Vec<D>& way) {
+      return std::ranges::any_of(ways, [&](const Vec<D>& other) { return way.dot(other) < -0.5; });
+    });
+  }
+
+  core::Domain<D> domain_;
+  core::RegionPointer<D> region_;
+  std::array<long, D> stride_{};
+  std::vector<Place> layer_, last_layer_, first_layer_;
+  std::vector<Runs> rows_, last_rows_, first_rows_;
+  std::unordered_map<long, Ridge> ridges_;
+};
+
+template <int D>
+scene::Passages surveyed(const scene::Scene& scene) {
+  Survey<D> survey(scene::fluid_region<D>(scene), scene::lattice_domain<D>(scene));
+  const double spacing = scene::lattice_spacing(scene);
+  const auto place_of = [&](long number) {
+    const auto node = survey.node_of(number);
+    scene::Vector place = scene::Vector::filled(D, 0);
+    for (int k = 0; k < D; ++k) place[k] = units::coordinate(node[k], spacing);
+    return place;
+  };
+  scene::Passages found;
+  const auto [narrowest, at] = survey.narrowest();
+  if (at >= 0) found.narrowest = narrowest, found.narrowest_at = place_of(at);
+  double all = 0;
+  int largest = -1;
+  found.through_x = false;
+  for (int run = 0; run < survey.pools.count(); ++run) {
+    if (survey.pools.root(run).first != run) continue;
+    all += survey.pools.nodes(run);
+    found.through_x = found.through_x || survey.pools.goes_on(run);
+    if (largest < 0 || survey.pools.nodes(run) > survey.pools.nodes(largest)) largest = run;
+  }
+  if (largest >= 0) found.apart = all - survey.pools.nodes(largest);
+  for (int run = 0; run < survey.pools.count() && found.apart > 0; ++run) {
+    if (survey.pools.root(run).first == largest) continue;
+    found.apart_at = place_of(survey.first_of_run[run]);
+    break;
+  }
+  for (const int end : {0, 1}) found.open[end] = survey.open_nodes[end] * std::pow(spacing, D - 1);
+  return found;
+}
+
+}  // namespace
+
+void survey_walls(scene::Scene& scene, const std::shared_ptr<const scene::Passages>& known) {
+  if (!scene.domain.has_shapes() || scene.domain.node_count() > most_surveyed) return;
+  scene.domain.passages = known;
+  if (known) return;
+  scene::in_dimension(scene.domain.dimension(), [&]<int D>(std::integral_constant<int, D>) {
+    scene.domain.passages = std::make_shared<const scene::Passages>(surveyed<D>(scene));
+  });
+}
+
+}  // namespace rouleau::shape
