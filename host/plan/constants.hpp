@@ -14,7 +14,7 @@ namespace rouleau::plan {
 inline constexpr double least_of_tau = 0.005;            ///< of tau - 1/2 [relaxation times]
 inline constexpr double least_inside_corrected = 0.025;  ///< inside cells with a correction [relaxation times]
 inline constexpr double most_layered_tau = 50.5;         ///< of the most viscous layer [relaxation times]
-inline constexpr double narrowest_passage = 8, least_passage = 4;  ///< spacings: warned of below, refused below
+inline constexpr double narrowest_passage = 8, least_passage = 4;  ///< spacings: warned of below, refused below [tubes]
 inline constexpr double least_tube_radius = 8;                     ///< spacings [tubes]
 inline constexpr double largest_driven_mach = 0.1;                 ///< of a driven flow [Mach numbers]
 inline constexpr double steps_of_period = 350;                     ///< fewest, over (tau - 1/2)^2 [oscillations]

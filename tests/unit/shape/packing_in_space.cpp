@@ -14,6 +14,7 @@
 #include "unit/shape/packing_fixture.hpp"
 #include "unit/triangle_distance.hpp"
 
+using rouleau::core::TriangleSurface;
 using rouleau::core::Vec;
 using namespace rouleau::plan;
 using namespace rouleau::scene;

@@ -1,0 +1,262 @@
+// Walls from files: pictures and meshes, against the shapes that they were made of.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <sstream>
+
+#include "core/surface/triangle_surface.hpp"
+#include "plan/read_scene.hpp"
+#include "scratch_folder.hpp"
+
+using namespace rouleau;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr double um = 1e-6, pi = std::numbers::pi;
+
+void put_number(std::string& to, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) to += static_cast<char>(value >> shift & 255U);
+}
+
+void put_chunk(std::string& to, const std::string& name, const std::string& data) {
+  put_number(to, static_cast<std::uint32_t>(data.size()));
+  std::uint32_t crc = ~0U;
+  for (const char byte : name + data) {
+    crc ^= static_cast<unsigned char>(byte);
+    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1U ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
+  }
+  to += name + data;
+  put_number(to, ~crc);
+}
+
+/// Grey values, 255 light, as an uncompressed PNG file; row 0 is the lowest.
+std::string png(int width, int height, const std::function<double(double x, double y)>& light) {
+  std::string rows;
+  for (int j = height - 1; j >= 0; --j) {
+    rows += '\0';
+    for (int i = 0; i < width; ++i)
+      rows += static_cast<char>(std::lround(255 * std::clamp(light(i + 0.5, j + 0.5), 0.0, 1.0)));
+  }
+  std::uint32_t a = 1, b = 0;
+  for (const char byte : rows) a = (a + static_cast<unsigned char>(byte)) % 65521, b = (b + a) % 65521;
+  std::string packed = "\x78\x01";
+  for (std::size_t at = 0; at < rows.size(); at += 65535) {
+    const auto length = static_cast<std::uint32_t>(std::min<std::size_t>(65535, rows.size() - at));
+    packed += at + length == rows.size() ? '\1' : '\0';
+    for (const std::uint32_t word : {length, ~length})
+      packed += static_cast<char>(word & 255U), packed += static_cast<char>(word >> 8U & 255U);
+    packed += rows.substr(at, length);
+  }
+  put_number(packed, b << 16U | a);
+  std::string head, file = "\x89PNG\r\n\x1a\n";
+  put_number(head, static_cast<std::uint32_t>(width));
+  put_number(head, static_cast<std::uint32_t>(height));
+  head += std::string("\x08\0\0\0\0", 5);
+  put_chunk(file, "IHDR", head);
+  put_chunk(file, "IDAT", packed);
+  put_chunk(file, "IEND", "");
+  return file;
+}
+
+std::string off(const core::TriangleSurface& surface) {
+  std::ostringstream out;
+  out.precision(17);
+  out << "OFF\n" << surface.nodes.size() << ' ' << surface.triangles.size() << " 0\n";
+  for (const auto& node : surface.nodes) out << node.transpose() << '\n';
+  for (const auto& [i, j, k] : surface.triangles) out << "3 " << i << ' ' << j << ' ' << k << '\n';
+  return out.str();
+}
+
+/// A round tube along x, from 0 to a length, with closed ends or open ones.
+core::TriangleSurface tube(double radius, double length, int around, bool closed) {
+  core::TriangleSurface made;
+  for (const double x : {0.0, length}) {
+    for (int i = 0; i < around; ++i)
+      made.nodes.push_back({x, radius * std::cos(2 * pi * i / around), radius * std::sin(2 * pi * i / around)});
+  }
+  for (int i = 0; i < around; ++i) {
+    const int next = (i + 1) % around;
+    made.triangles.push_back({i, next, around + i});
+    made.triangles.push_back({next, around + next, around + i});
+  }
+  for (const double x : {0.0, length}) {
+    if (!closed) break;
+    const int middle = static_cast<int>(made.nodes.size()), first = x > 0 ? around : 0;
+    made.nodes.push_back({x, 0, 0});
+    for (int i = 0; i < around; ++i) {
+      const int next = (i + 1) % around;
+      if (x > 0)
+        made.triangles.push_back({middle, first + i, first + next});
+      else
+        made.triangles.push_back({middle, first + next, first + i});
+    }
+  }
+  return made;
+}
+
+class Scenes {
+ public:
+  test::ScratchFolder folder;
+  scene::Scene read(const std::string& domain) const {
+    return plan::read_scene(folder.write("scene.json", R"({"rouleau": 1, "domain": {)" + domain + R"(},
+        "fluid": {"density": "1 g/cm3", "viscosity": "1 cP"}, "stages": [{"name": "rest", "duration": "1 ms"}]})"));
+  }
+  std::string message(const std::string& domain) const {
+    try {
+      static_cast<void>(read(domain));
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+const std::string plane = R"("size": ["40 um", "20 um"], "nodes": [80, 40], )",
+                  space = R"("size": ["40 um", "20 um", "20 um"], "nodes": [40, 20, 20], )";
+
+double distance(const scene::Scene& scene, double x, double y) {
+  return scene.domain.region_in_plane->distance({x * um, y * um}).value / um;
+}
+double distance(const scene::Scene& scene, double x, double y, double z) {
+  return scene.domain.region_in_space->distance({x * um, y * um, z * um}).value / um;
+}
+std::string within(const std::string& shape) { return R"("walls": {"within": )" + shape + "}"; }
+
+}  // namespace
+
+TEST_CASE("the border of a drawn disc lies at half grey, to a small part of a pixel") {
+  const Scenes scenes;
+  // Grey falls over four pixels; pixels of 0.25 um: a disc of 6 um about (18, 10) um.
+  const auto drawn = [](double x, double y) { return 0.5 + (24 - std::hypot(x - 72, y - 40)) / 4; };
+  scenes.folder.write("disc.png", png(160, 80, drawn));
+  scenes.folder.write("hole.png", png(160, 80, [&](double x, double y) { return 1 - drawn(x, y); }));
+  const auto disc = scenes.read(plane + within(R"({"image": {"file": "disc.png", "pixel": "0.25 um"}})")),
+             same =
+                 scenes.read(plane + within(R"({"image": {"file": "hole.png", "pixel": "0.25 um", "fluid": "dark"}})")),
+             hole = scenes.read(
+                 plane + R"("y": "periodic", "obstacles": [{"image": {"file": "hole.png", "pixel": "0.25 um"}}])");
+  for (const double angle : {0.0, 0.4, 1.0, 2.5, 4.4}) {
+    const double x = 18 + 5 * std::cos(angle), y = 10 + 5 * std::sin(angle);
+    CHECK(distance(disc, x, y) == Approx(1).margin(0.01));
+    CHECK(distance(same, x, y) == Approx(1).margin(0.01));
+    CHECK(distance(hole, x, y) == Approx(-1).margin(0.01));
+  }
+  CHECK(disc.domain.content() == Approx(36 * pi * um * um).epsilon(2e-3));
+  CHECK(hole.domain.content() == Approx((800 - 36 * pi) * um * um).epsilon(1e-3));
+}
+
+TEST_CASE("a picture as long as a period goes on with itself, and ends where it ends otherwise") {
+  const Scenes scenes;
+  const auto band = [](double, double y) { return y > 5 && y < 15 ? 1.0 : 0.0; };
+  scenes.folder.write("band.png", png(40, 20, band));
+  const auto scene = scenes.read(plane + within(R"({"image": {"file": "band.png", "pixel": "1 um"}})"));
+  for (const double x : {0.0, 0.3, 20.0, 39.9}) CHECK(distance(scene, x, 10) == Approx(5));
+  CHECK(scene.domain.content() == Approx(400 * um * um).epsilon(1e-5));
+  const auto moved =
+      scenes.read(plane + within(R"({"image": {"file": "band.png", "pixel": "1 um", "at": ["7 um", "2 um"]}})"));
+  for (const double x : {0.0, 7.0, 39.9}) CHECK(distance(moved, x, 10) == Approx(3));
+  scenes.folder.write("short.png", png(20, 20, band));
+  const auto shorter =
+      scenes.read(plane + within(R"({"image": {"file": "short.png", "pixel": "1 um", "at": ["5 um", "0 um"]}})"));
+  CHECK(distance(shorter, 8, 10) == Approx(3));
+  CHECK(distance(shorter, 30, 10) == Approx(-5));
+  CHECK_THAT(scenes.message(plane + within(R"({"image": {"file": "band.png", "pixel": "0.99 um"}})")),
+             Contains("40 pixels along x make 39.6 um") && Contains("write \"pixel\": \"1 um\""));
+  CHECK_THAT(
+      scenes.message(
+          plane +
+          within(R"({"image": {"file": "band.png", "pixel": "1 um", "fluid": "dark", "at": ["0 um", "500 um"]}})")),
+      Contains("leave no fluid"));
+  scenes.folder.write("black.png", png(40, 20, [](double, double) { return 0.0; }));
+  CHECK_THAT(scenes.message(plane + within(R"({"image": {"file": "black.png", "pixel": "1 um"}})")),
+             Contains("nothing in the picture is lighter than half grey") && Contains("\"dark\""));
+}
+
+TEST_CASE("pictures in space: one for all heights, and a stack that rebuilds a ball") {
+  const Scenes scenes;
+  std::string files;
+  for (int k = 0; k < 20; ++k) {
+    const double z = k + 0.5 - 10;
+    const std::string name = "z" + std::to_string(k) + ".png";
+    scenes.folder.write(name,
+                        png(40, 20, [&](double x, double y) { return 0.5 + (7 - std::hypot(x - 15, y - 10, z)) / 4; }));
+    files += (k > 0 ? ", \"" : "\"") + name + '"';
+  }
+  const auto ball =
+      scenes.read(space + within(R"({"image": {"file": [)" + files + R"(], "pixel": "1 um", "spacing": "1 um"}})"));
+  CHECK(distance(ball, 15, 10, 14) == Approx(3).margin(0.05));
+  CHECK(distance(ball, 18, 8, 9) == Approx(7 - std::sqrt(14.0)).margin(0.05));
+  CHECK(ball.domain.content() == Approx(4 * pi / 3 * 343 * um * um * um).epsilon(0.01));
+  const auto column = scenes.read(space + within(R"({"image": {"file": "z10.png", "pixel": "1 um"}})"));
+  CHECK(distance(column, 15, 14, 1) == Approx(std::sqrt(49 - 0.25) - 4).margin(0.05));
+  CHECK(distance(column, 15, 14, 19) == distance(column, 15, 14, 1));
+  scenes.folder.write("z3.png", png(41, 20, [](double, double) { return 1.0; }));
+  CHECK_THAT(
+      scenes.message(space + within(R"({"image": {"file": [)" + files + R"(], "pixel": "1 um", "spacing": "1 um"}})")),
+      Contains("/image/file/3") && Contains("another size"));
+}
+
+TEST_CASE("a vessel from a mesh has the distances of what it was made of, through periodic ends as well") {
+  const Scenes scenes;
+  const std::string mesh = R"({"mesh": {"file": "vessel.off", "unit": "1 um", "at": ["0 um", "10 um", "10 um"]}})";
+  for (const bool closed : {true, false}) {
+    constexpr int around = 96;
+    scenes.folder.write("vessel.off", off(tube(8, 40, around, closed)));
+    const auto scene = scenes.read(space + within(mesh));
+    for (const double x : {0.0, 0.4, 20.0, 39.9})
+      CHECK(distance(scene, x, 10, 13) == Approx(5).margin(8 * (1 - std::cos(pi / around))));
+    const double area = around / 2.0 * 64 * std::sin(2 * pi / around);
+    CHECK(scene.domain.content() == Approx(area * 40 * um * um * um).epsilon(1e-4));
+  }
+  scenes.folder.write("vessel.off", off(core::unit_sphere(8)));
+  const auto ball = scenes.read(
+      space + within(R"({"mesh": {"file": "vessel.off", "unit": "7 um", "at": ["39 um", "10 um", "10 um"]}})"));
+  CHECK(distance(ball, 1, 10, 10) == Approx(5).margin(0.1));  // in its image
+  CHECK(distance(ball, 20, 10, 10) == Approx(-12).margin(0.1));
+}
+
+TEST_CASE("a mesh is turned by its axis and angle as cells are") {
+  const Scenes scenes;
+  core::TriangleSurface box = core::ellipsoid(6, {6, 1, 2});
+  scenes.folder.write("box.off", off(box));
+  const auto scene = scenes.read(
+      space +
+      within(R"({"mesh": {"file": "box.off", "unit": "1 um", "at": ["20 um", "10 um", "10 um"], "angle": "90 deg"}})"));
+  CHECK(distance(scene, 20, 15, 10) > 0);
+  CHECK(distance(scene, 25, 10, 10) < 0);
+  const auto about = scenes.read(
+      space +
+      within(
+          R"({"mesh": {"file": "box.off", "unit": "1 um", "at": ["20 um", "10 um", "10 um"], "axis": [0, 1, 0], "angle": "90 deg"}})"));
+  CHECK(distance(about, 20, 10, 15) > 0);
+  CHECK(distance(about, 20, 15, 10) < 0);
+}
+
+TEST_CASE("meshes that are open, inside out, or do not fit their image are refused with the place") {
+  const Scenes scenes;
+  const std::string mesh = R"({"mesh": {"file": "vessel.off", "unit": "1 um", "at": ["0 um", "10 um", "10 um"]}})";
+  auto leaky = tube(8, 40, 12, true);
+  leaky.triangles.erase(leaky.triangles.begin() + 4);
+  scenes.folder.write("vessel.off", off(leaky));
+  CHECK_THAT(scenes.message(space + within(mesh)),
+             Contains("/within/mesh/file") && Contains("the border is not closed") && Contains(" um, "));
+  auto inside_out = tube(8, 40, 12, true);
+  for (auto& triangle : inside_out.triangles) std::swap(triangle[0], triangle[1]);
+  scenes.folder.write("vessel.off", off(inside_out));
+  CHECK_THAT(scenes.message(space + within(mesh)), Contains("inside out"));
+  auto narrow = tube(8, 40, 12, true);
+  for (auto& node : narrow.nodes) node.y() *= 1 - node.x() / 80;
+  scenes.folder.write("vessel.off", off(narrow));
+  CHECK_THAT(scenes.message(space + within(mesh)), Contains("does not fit its image one period away"));
+  scenes.folder.write("vessel.off", off(tube(8, 39, 12, false)));
+  CHECK_THAT(scenes.message(space + within(mesh)), Contains("the border is not closed"));
+  scenes.folder.write("vessel.off", off(tube(8, 60, 12, true)));
+  CHECK_THAT(scenes.message(space + R"("obstacles": [], )" + within(mesh)), Contains("does not fit its image"));
+  scenes.folder.write("vessel.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n2 0 0\n0 0 1\n3 0 1 2\n");
+  CHECK_THAT(scenes.message(space + within(mesh)), Contains("triangle 0 has no area"));
+  scenes.folder.write("vessel.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n");
+  CHECK_THAT(scenes.message(space + within(mesh)), Contains("triangle 0 has the node 7, and there are 3"));
+}
