@@ -38,6 +38,17 @@ core::RegionPointer<D> everything() {
   return core::box_region<D>(-endless, endless);
 }
 
+/// With its images; facets that are lost where nearby corners become one go.
+template <int D>
+core::Border<D> imaged(core::Border<D> border, const core::Domain<D>& domain) {
+  border = core::with_images(std::move(border), domain);
+  std::erase_if(border.facets, [](auto facet) {
+    std::sort(facet.begin(), facet.end());
+    return std::adjacent_find(facet.begin(), facet.end()) != facet.end();
+  });
+  return border;
+}
+
 /// Whether a border goes through the domain along a periodic axis, from end to end.
 template <int D>
 bool passes(const core::Border<D>& border, const core::Domain<D>& domain, int axis) {
@@ -154,7 +165,7 @@ core::RegionPointer<D> closed_region(const scene::SceneFields& fields, const std
                         ", which is periodic, and would lie over its own image\nlet it begin at 0 um and end at " +
                         number(domain.period(k) * unit * 1e6) + " um, or make it shorter");
   }
-  border = core::with_images(std::move(border), domain);
+  border = imaged(std::move(border), domain);
   if (border.facets.empty()) return everything<D>();
   require_closed(fields, pointer, border, domain, unit);
   if (!(enclosed(border, held) > 0))
@@ -257,7 +268,7 @@ core::RegionPointer<D> picture_region(const scene::SceneFields& fields, const st
   core::Border<D> border = core::zero_border<D>(samples.values, samples.size);
   if (border.facets.empty()) return everything<D>();
   for (Vec<D>& corner : border.corners) corner = first + corner.cwiseProduct(step);
-  border = core::with_images(std::move(border), around);
+  border = imaged(std::move(border), around);
   try {
     return std::make_shared<core::FacetedRegion<D>>(std::move(border));
   } catch (const std::invalid_argument& error) {

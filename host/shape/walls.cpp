@@ -269,14 +269,14 @@ class Measure {
 };
 
 template <int D>
-void build(scene::Domain& domain, const scene::SceneFields& fields, RegionPointer<D>& region) {
+void build(scene::Domain& domain, const scene::SceneFields& fields, const Faults& faults) {
   const double unit = common_unit(domain);
   const Builder<D> builder(domain, unit, fields);
   std::vector<RegionPointer<D>> parts;
   if (domain.within) fields.attempt([&] { parts.push_back(builder.of(*domain.within)); });
   for (const WallShape& obstacle : domain.obstacles)
     fields.attempt([&] { parts.push_back(core::outside_of<D>(builder.of(obstacle))); });
-  if (parts.size() < domain.obstacles.size() + (domain.within ? 1 : 0)) return;  // faults have been said
+  if (!faults.empty()) return;
   const RegionPointer<D> fluid = core::intersection<D>(std::move(parts));
   const std::string pointer = domain.within ? domain.within->pointer : "/domain/obstacles";
   const Measure<D> measured(*fluid, builder.domain());
@@ -290,7 +290,7 @@ void build(scene::Domain& domain, const scene::SceneFields& fields, RegionPointe
                   "or z\nleave them out, or make them smaller than the domain");
   domain.region_content = measured.content * std::pow(unit, D);
   domain.region_width = measured.width * unit;
-  region = core::magnified<D>(fluid, unit, Vec<D>::Constant(0.5 * unit));
+  domain.region<D>() = core::magnified<D>(fluid, unit, Vec<D>::Constant(0.5 * unit));
 }
 
 }  // namespace
@@ -299,9 +299,8 @@ void build_walls(scene::Scene& scene, Faults& faults) {
   if (!scene.domain.has_shapes()) return;
   const scene::SceneFields fields(*scene.document, faults);
   fields.attempt([&] {
-    scene::in_dimension(scene.domain.dimension(), [&]<int D>(std::integral_constant<int, D>) {
-      build<D>(scene.domain, fields, scene.domain.region<D>());
-    });
+    scene::in_dimension(scene.domain.dimension(),
+                        [&]<int D>(std::integral_constant<int, D>) { build<D>(scene.domain, fields, faults); });
   });
 }
 

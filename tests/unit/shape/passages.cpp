@@ -1,0 +1,97 @@
+// What the lattice makes of the fluid between walls of any shape.
+#include "shape/passages.hpp"
+
+#include <catch2/catch.hpp>
+#include <numbers>
+
+#include "plan/read_scene.hpp"
+#include "scratch_folder.hpp"
+
+using namespace rouleau;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr double um = 1e-6;
+
+scene::Passages passages(const std::string& domain) {
+  const test::ScratchFolder folder;
+  const auto file = folder.write("scene.json", R"({"rouleau": 1, "domain": {)" + domain + R"(},
+      "fluid": {"density": "1 g/cm3", "viscosity": "1 cP"}, "stages": [{"name": "rest", "duration": "1 ms"}]})");
+  return *plan::read_scene(file).domain.passages;
+}
+
+const std::string plane = R"("size": ["40 um", "20 um"], "nodes": [160, 80], )",
+                  space = R"("size": ["20 um", "10 um", "10 um"], "nodes": [80, 40, 40], )",
+                  closed = R"("y": {"lower": {"wall": {}}, "upper": {"wall": {}}}, )";
+
+std::string disc(double x, double y, double radius) {
+  return R"({"sphere": {"center": [)" + std::to_string(x) + "e-6, " + std::to_string(y) + R"(e-6], "radius": )" +
+         std::to_string(radius) + "e-6}}";
+}
+
+}  // namespace
+
+TEST_CASE("the narrowest passage is found between discs, across a period, and before a plane wall") {
+  const auto two = passages(plane + closed + R"("obstacles": [)" + disc(20, 5, 4) + ", " + disc(20, 15, 4) + "]");
+  CHECK(two.narrowest == Approx(4).epsilon(0.01));  // to the walls, 1 um
+  const auto row = passages(plane + R"("y": "periodic", "obstacles": [)" + disc(20, 3, 9) + "]");
+  CHECK(row.narrowest == Approx(8).epsilon(0.01));
+  CHECK(row.narrowest_at.x() == Approx(20 * um).margin(0.5 * um));
+  CHECK(row.narrowest_at.y() == Approx(13 * um).margin(0.5 * um));
+  const auto none = passages(plane + R"("y": "periodic", "obstacles": [)" + disc(20, 10, 1) + "]");
+  CHECK(none.narrowest > 64);
+}
+
+TEST_CASE("the width of a channel at an angle is that from wall to wall") {
+  // From one corner of the domain to the opposite one, which are one place a period away.
+  const auto tilted = passages(plane + R"("y": "periodic", "walls": {"within": {"outline": {"points":
+      [["0 um", "-3 um"], ["40 um", "17 um"], ["40 um", "23 um"], ["0 um", "3 um"]]}}})");
+  CHECK(tilted.narrowest == Approx(24 * std::cos(std::atan(0.5))).epsilon(0.01));
+  CHECK(tilted.through_x);
+  CHECK(tilted.apart == 0);
+}
+
+TEST_CASE("corners, and wedges between walls that touch, are no passages") {
+  const auto touching = passages(plane + closed + R"("obstacles": [)" + disc(20, 3, 3.2) + "]");
+  CHECK(touching.narrowest == Approx(4 * 13.8).epsilon(0.01));
+  const auto wedge = passages(
+      plane + R"("walls": {"within": {"union": [{"box": {"lower": ["0 um", "0 um"], "upper": ["40 um", "10 um"]}},
+      {"outline": {"points": [["10 um", "9 um"], ["14 um", "9 um"], ["12 um", "19 um"]]}}]}})");
+  CHECK(wedge.narrowest == Approx(40).epsilon(0.01));
+}
+
+TEST_CASE("a tube's width is its diameter, and a ball in it leaves the ring around it") {
+  const std::string tube = R"({"cylinder": {"axis": "x", "center": ["5 um", "5 um"], "radius": "4.5 um"}})";
+  CHECK(passages(space + R"("walls": {"within": )" + tube + "}").narrowest == Approx(36).epsilon(0.01));
+  const auto ring = passages(space + R"("walls": {"within": )" + tube +
+                             R"(}, "obstacles": [{"sphere": {"center": ["7 um", "5 um", "5 um"], "radius": "3 um"}}])");
+  CHECK(ring.narrowest == Approx(6).epsilon(0.02));
+  CHECK(ring.open[0] == Approx(20.25 * std::numbers::pi * um * um).epsilon(0.02));
+}
+
+TEST_CASE("pools that no way leads to are counted, and whether a way leads through a period") {
+  const auto pools = passages(
+      plane + R"("walls": {"within": {"union": [{"box": {"lower": ["0 um", "0 um"], "upper": ["40 um", "10 um"]}},
+      {"box": {"lower": ["4 um", "12 um"], "upper": ["9 um", "17 um"]}}]}})");
+  CHECK(pools.through_x);
+  CHECK(pools.apart == 400);
+  CHECK(pools.apart_at.y() == Approx(12.125 * um));
+  const auto blocked =
+      passages(plane + closed + R"("obstacles": [{"box": {"lower": ["4 um", "0 um"], "upper": ["9 um", "20 um"]}}])");
+  CHECK_FALSE(blocked.through_x);
+  CHECK(blocked.apart == 0);
+  // Two walls with gaps at different heights, and a stair that comes back to itself without going on.
+  const auto winding =
+      passages(plane + closed + R"("obstacles": [{"box": {"lower": ["4 um", "0 um"], "upper": ["9 um", "14 um"]}},
+      {"box": {"lower": ["24 um", "6 um"], "upper": ["29 um", "20 um"]}}])");
+  CHECK(winding.through_x);
+  const auto loop = passages(
+      plane + R"("walls": {"within": {"difference": [{"box": {"lower": ["5 um", "3 um"], "upper": ["35 um", "17 um"]}},
+      {"box": {"lower": ["12 um", "8 um"], "upper": ["28 um", "12 um"]}}]}})");
+  CHECK_FALSE(loop.through_x);
+  CHECK(loop.apart == 0);
+  const auto across = passages(
+      plane + R"("y": "periodic", "obstacles": [{"box": {"lower": ["4 um", "0 um"], "upper": ["9 um", "20 um"]}}])");
+  CHECK_FALSE(across.through_x);  // it goes on along y alone
+}
