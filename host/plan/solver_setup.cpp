@@ -26,7 +26,7 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
       .body_force_z = stage.body_force.z(),
       .oscillation = stage.oscillation,
       // Without cells the gradient that this flow takes is known.
-      .mean_velocity = plan.has_cells && stage.stage->mean_velocity
+      .mean_velocity = (plan.has_cells || scene.domain.has_shapes()) && stage.stage->mean_velocity
                            ? stage.units.to_lattice(*stage.stage->mean_velocity, units::dimension::velocity)
                            : 0,
       .developed = stage.stage->start == scene::WallStart::developed,

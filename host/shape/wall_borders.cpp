@@ -97,8 +97,8 @@ void require_closed(const scene::SceneFields& fields, const std::string& pointer
   if (open.size() > shown) words += " and elsewhere";
   for (int k = 0; k < D; ++k) {
     const double period = domain.period(k), off = 2 * rounding * period;
-    const double at = open.front()[k];
-    if (period == 0 || (at > -0.5 + off && at < period - 0.5 - off)) continue;
+    const auto at_end = [&](const Vec<D>& side) { return side[k] <= -0.5 + off || side[k] >= period - 0.5 - off; };
+    if (period == 0 || !std::ranges::all_of(open, at_end)) continue;
     fields.refuse(pointer, "what leaves the domain along " + axis_name(k) +
                                ", which is periodic, does not fit its image one period away: borders end at " + words +
                                "\nlet it begin at 0 um and end at " + number(period * unit * 1e6) +

@@ -6,6 +6,7 @@
 #include "json/document.hpp"
 #include "scratch_folder.hpp"
 #include "shape/random_cells.hpp"
+#include "unit/png.hpp"
 
 using namespace rouleau;
 using Catch::Matchers::Contains;
@@ -83,6 +84,33 @@ TEST_CASE("a mesh is part of the scene that names it") {
   CHECK(read("").at("sha256") != hash);
   std::filesystem::resize_file(file, std::uintmax_t{20} << 30U);
   CHECK_THROWS_WITH(read(""), Contains("cell.off") && Contains("more than 4096 MiB"));
+}
+
+TEST_CASE("pictures of walls are part of the scene that names them, one and a list of them") {
+  const test::ScratchFolder folder;
+  const auto light = [](double, double y) { return y > 3 ? 1.0 : 0.0; };
+  const auto file = [&](const std::string& name) { return folder.write(name, test::png(10, 10, light)).string(); };
+  const std::string a = file("a.png"), b = file("b.png");
+  const auto read = [&](const std::string& files, const std::string& further) {
+    const auto scene = folder.write("scene.json", R"({"rouleau": 1, "domain": {"size": ["10 um", "10 um", "8 um"],
+        "nodes": [20, 20, 16], "walls": {"within": {"image": {"pixel": "1 um", "file": )" +
+                                                      files + further + R"(}}}},
+        "fluid": {"density": "1 g/cm3", "viscosity": "1 cP"}, "stages": [{"name": "rest", "duration": "1 ms"}]})");
+    return plan::read_scene(scene).document->root().at("/domain/walls/within/image"_json_pointer);
+  };
+  const auto one = read("\"a.png\"", "");
+  CHECK(one.at("file") == a);
+  const std::string hash = one.at("sha256");
+  const auto stack = read(R"(["a.png", "b.png"])", R"(, "spacing": "4 um")");
+  CHECK(stack.at("file") == nlohmann::json({a, b}));
+  CHECK(stack.at("sha256") == nlohmann::json({hash, hash}));
+  const std::string hashes = R"(, "spacing": "4 um", "sha256": [")" + hash + R"(", ")" + hash + "\"]";
+  CHECK_NOTHROW(read(R"(["a.png", "b.png"])", hashes));
+  folder.write("b.png", test::png(10, 10, [](double, double y) { return y > 4 ? 1.0 : 0.0; }));
+  CHECK_THROWS_WITH(read(R"(["a.png", "b.png"])", hashes),
+                    Contains("image/sha256") && Contains("b.png") && Contains("has another hash"));
+  CHECK_THROWS_WITH(read("\"a.png\"", R"(, "sha256": [")" + hash + R"(", ")" + hash + "\"]"),
+                    Contains("more hashes than files"));
 }
 
 TEST_CASE("a scene with cells from a file says where the file is and what was in it, and refuses another one") {
