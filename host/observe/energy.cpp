@@ -66,7 +66,10 @@ EnergySnapshot observe_energy(core::AnySolver<D>& solver, const core::Energetics
     energy.wall_power = 0;
   }
   const core::WallVelocity& walls = solver.fluid().last_walls();
-  if (!setting.domain.periodic[1] && !setting.solid) {
+  if (setting.solid && (walls.lower != 0 || walls.upper != 0)) {
+    const core::WallForces<D> forces = solver.wall_forces();
+    energy.wall_power = -(forces.lower[0] * walls.lower + forces.upper[0] * walls.upper) * watt;
+  } else if (!setting.domain.periodic[1] && !setting.solid) {
     const auto stress = solver.wall_stress();  // what is done to the walls
     energy.wall_power =
         -(stress.lower * walls.lower + stress.upper * walls.upper) * setting.domain.size[0] * depth * watt;

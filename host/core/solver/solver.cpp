@@ -51,9 +51,6 @@ FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const Cells& cel
     throw std::invalid_argument("solid nodes are those of the whole lattice");
   if (setup.solid && setup.developed && !setup.section_flow)
     throw std::invalid_argument("the developed flow between these walls is not known");
-  const auto move = [](const WallVelocity& walls) { return walls.lower != 0 || walls.upper != 0; };
-  if (setup.solid && (move(setup.walls) || move(setup.oscillation.walls)))
-    throw std::invalid_argument("walls of a domain with solid nodes are at rest");
   if (!setup.layers.empty() && !cells.cells.empty() && (setup.semi_implicit || setup.slip_correction))
     throw std::invalid_argument("cells in layers take neither the semi-implicit step nor the slip correction");
   if (!setup.layers.empty() && setup.developed && setup.oscillation.any())
