@@ -66,6 +66,15 @@ std::string micrometres(double spacings, const scene::StageSetting& stage) {
   return number(spacings * stage.units.length * 1e6, 3) + " um";
 }
 
+const std::string finer = ", or raise the resolution";
+
+std::string some_strength(const plan::Plan& plan) {
+  const double modulus = plan::shear_modulus(plan);
+  return std::isnan(modulus) ? "" : "a strength of " + number(modulus, 2) + " J/m2 and ";
+}
+
+std::string some_reach(const scene::StageSetting& stage) { return "a cutoff of " + micrometres(2, stage) + " or more"; }
+
 }  // namespace
 
 std::string attraction_remedy(const plan::Plan& plan, const scene::StageSetting& stage) {
@@ -112,21 +121,29 @@ std::string attraction_remedy(const plan::Plan& plan, const scene::StageSetting&
 
 std::string crossing_remedy(const plan::Plan& plan, const scene::StageSetting& stage, int cell, int other) {
   const scene::Scene& scene = *plan.scene;
-  const std::string finer = ", or raise the resolution";
   std::string attraction = attraction_remedy(plan, stage);
   if (!attraction.empty()) return attraction;
   const scene::CellType &mine = scene.cell_types[scene.cells[cell].type],
                         &its = scene.cell_types[scene.cells[other].type];
-  const double modulus = plan::shear_modulus(plan);
-  const std::string strength = std::isnan(modulus) ? "" : "a strength of " + number(modulus, 2) + " J/m2 and ";
+  const std::string strength = some_strength(plan), reach = some_reach(stage);
   if (cell == other) {
     if (repels_itself(plan, scene.cells[cell].type)) return "stiffen bending" + finer;
     return new_repulsion(mine.name, "self", strength + "a cutoff below the cells' least thickness") + finer;
   }
-  const std::string reach = "a cutoff of " + micrometres(2, stage) + " or more";
   for (std::size_t i = 0; i < plan.interactions.size(); ++i)
     if (between_cells(plan, i)) return "give the repulsion between cells more strength, or " + reach + finer;
   return new_repulsion(mine.name, its.name, strength + reach) + finer;
+}
+
+std::string wall_crossing_remedy(const plan::Plan& plan, const scene::StageSetting& stage, int cell) {
+  const scene::Scene& scene = *plan.scene;
+  const int type = scene.cells[cell].type;
+  const std::string reach = some_reach(stage);
+  for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
+    if (scene.interactions[i].with_wall() && scene.interactions[i].between[0] == type && plan.interactions[i].active())
+      return "give the repulsion from walls more strength, or " + reach + finer;
+  }
+  return new_repulsion(scene.cell_types[type].name, "wall", some_strength(plan) + reach) + finer;
 }
 
 template <int D>

@@ -15,6 +15,9 @@ std::string attraction_remedy(const plan::Plan& plan, const scene::StageSetting&
 /// What is to be put between two cells whose membranes met, or within one: `other` may be the same.
 std::string crossing_remedy(const plan::Plan& plan, const scene::StageSetting& stage, int cell, int other);
 
+/// What is to be put between a cell and a wall that it has gone through.
+std::string wall_crossing_remedy(const plan::Plan& plan, const scene::StageSetting& stage, int cell);
+
 /// Where a potential presses on two cells by more than the lattice's fluid bears, says so in the failure: which cells,
 /// how far apart, which potential, and what to do. All ranks together.
 template <int D>

@@ -230,6 +230,23 @@ std::optional<Failure> check_cells(observe::Observer& observer, const scene::Sta
   return first_failure(ranks, crosses, order);
 }
 
+/// Cells beside walls of any shape; those of planes are left through (check_nodes).
+template <int D>
+std::optional<Failure> check_walls(core::AnySolver<D>& solver, const scene::StageSetting& setting,
+                                   const plan::Plan& plan) {
+  if (!solver.setup().region) return std::nullopt;
+  std::optional<Failure> crosses;
+  if (const auto beyond = solver.cell_tasks()->beyond_wall()) {
+    const auto node = static_cast<std::size_t>(beyond->node);
+    std::array<double, D> place;
+    for (std::size_t k = 0; k < D; ++k) place[k] = solver.cells().position[k][node];
+    crosses = failure("crossing", in_metres(place, D, setting.units.length), beyond->cell, beyond->depth, 0,
+                      "the membrane of cell " + std::to_string(beyond->cell) + " crosses a wall (in lattice spacings)",
+                      wall_crossing_remedy(plan, setting, beyond->cell));
+  }
+  return first_failure(solver.ranks(), crosses, by_cell(crosses));
+}
+
 }  // namespace
 
 template <int D>
@@ -257,6 +274,7 @@ std::optional<Failure> check_state(observe::Observer& observer, core::AnySolver<
     return found;
   }
   if (solver.cells().cells.empty()) return std::nullopt;
+  if (auto found = check_walls(solver, setting, plan)) return found;
   core::Surroundings<D> around = solver.cell_tasks()->surroundings();
   return check_cells(observer, setting, around, plan);
 }

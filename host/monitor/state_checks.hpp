@@ -11,8 +11,9 @@
 namespace rouleau::monitor {
 
 /// The first check of the scene that the state fails, without its time: a value of the fluid that is no number, the
-/// Mach number, a cell's area or volume, the length of a segment or edge, membranes that cross. `observer` has measured
-/// the fluid, and follows mass, Mach number and areas. All ranks together, and all find the same.
+/// Mach number, membranes that cross walls of any shape, a cell's area or volume, the length of a segment or edge,
+/// membranes that cross each other. `observer` has measured the fluid, and follows mass, Mach number and areas. All
+/// ranks together, and all find the same.
 template <int D>
 std::optional<Failure> check_state(observe::Observer& observer, core::AnySolver<D>& solver,
                                    const core::FluidMeasures<D>& measured, const scene::StageSetting& setting,

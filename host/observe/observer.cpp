@@ -98,7 +98,7 @@ double Observer::area_leakage(const core::CellNodes& cells, const core::Ranks<D>
 }
 
 template <int D>
-double Observer::momentum_residual(const core::CellNodes& m, const std::array<double, 2>& from_walls,
+double Observer::momentum_residual(const core::CellNodes& m, const std::array<double, 3>& from_walls,
                                    const core::Ranks<D>& ranks) {
   const auto [net_x, net_y, net_z, magnitudes] = sums_over<4>(m, ranks, [&](int c) {
     std::array<double, 4> of_cell{};
@@ -111,7 +111,7 @@ double Observer::momentum_residual(const core::CellNodes& m, const std::array<do
     }
     return of_cell;
   });
-  const double net = std::hypot(std::hypot(net_x, net_y - from_walls[0]), net_z - from_walls[1]);
+  const double net = std::hypot(std::hypot(net_x - from_walls[0], net_y - from_walls[1]), net_z - from_walls[2]);
   return magnitudes > 0 ? net / magnitudes : 0;
 }
 
@@ -292,9 +292,9 @@ template double Observer::follow_area(const core::Membranes&, const core::Ranks<
 template double Observer::follow_area(const core::Surfaces&, const core::Ranks<3>&, int*);
 template double Observer::area_leakage(const core::CellNodes&, const core::Ranks<2>&, int*);
 template double Observer::area_leakage(const core::CellNodes&, const core::Ranks<3>&, int*);
-template double Observer::momentum_residual(const core::CellNodes&, const std::array<double, 2>&,
+template double Observer::momentum_residual(const core::CellNodes&, const std::array<double, 3>&,
                                             const core::Ranks<2>&);
-template double Observer::momentum_residual(const core::CellNodes&, const std::array<double, 2>&,
+template double Observer::momentum_residual(const core::CellNodes&, const std::array<double, 3>&,
                                             const core::Ranks<3>&);
 template core::FluidMeasures<2> Observer::measure_fluid(core::AnyFluid<2>&, const scene::StageSetting&, bool) const;
 template core::FluidMeasures<3> Observer::measure_fluid(core::AnyFluid<3>&, const scene::StageSetting&, bool) const;

@@ -63,10 +63,10 @@ class Observer {
   /// over its rest area; `cell`: whose. NaN without that correction. All ranks together, of all cells.
   template <int D>
   static double area_leakage(const core::CellNodes& cells, const core::Ranks<D>& ranks, int* cell = nullptr);
-  /// Sum of nodal forces, less what walls do to the cells (along y), over the sum of their magnitudes: rounding only,
+  /// Sum of nodal forces, less what walls do to the cells, over the sum of their magnitudes: rounding only,
   /// or an internal force is unbalanced. All ranks together, of all cells.
   template <int D = 2>
-  static double momentum_residual(const core::CellNodes& cells, const std::array<double, 2>& from_walls = {},
+  static double momentum_residual(const core::CellNodes& cells, const std::array<double, 3>& from_walls = {},
                                   const core::Ranks<D>& ranks = {});
 
   [[nodiscard]] const core::Domain<2>& domain() const { return domain_; }

@@ -240,7 +240,7 @@ class Simulation final : StepHooks {
       state_.momentum_residual = std::max(
           state_.momentum_residual,
           observe::Observer::momentum_residual(
-              engine_.cells(), tasks != nullptr ? tasks->force_from_walls() : std::array<double, 2>{}, ranks()));
+              engine_.cells(), tasks != nullptr ? tasks->force_from_walls() : std::array<double, 3>{}, ranks()));
       if (ranks().first()) progress_.update(progress());
       state_.costs.add("observe and check", seconds_since(start), 1);
     }

@@ -12,23 +12,24 @@ namespace rouleau::core {
 template <int D>
 WallContacts<D>::WallContacts(Cells& cells, const std::vector<WallInteraction>& interactions, const Domain<D>& domain,
                               RegionPointer<D> region) {
-  if (region) {
-    walls_.push_back({.axis = 0, .region = intersection<D>({std::move(region), between_walls(domain)})});
-  } else {
-    for (int axis = 1; axis < D; ++axis) {
-      if (!domain.walled(axis)) continue;
-      walls_.push_back({axis, -0.5, 1});
-      walls_.push_back({axis, domain.size[axis] - 0.5, -1});
-    }
+  for (int axis = 1; axis < D && !region; ++axis) {
+    if (!domain.walled(axis)) continue;
+    walls_.push_back({axis, -0.5, 1});
+    walls_.push_back({axis, domain.size[axis] - 0.5, -1});
   }
-  if (walls_.empty()) throw std::invalid_argument("a potential between cells and walls needs walls");
+  if (walls_.empty() && !region) throw std::invalid_argument("a potential between cells and walls needs walls");
+  double reach = 0;
   for (const auto& [type, potential] : interactions) {
     // Friction would be part of the walls' stress and power.
     if (reads_sliding(potential))
       throw std::invalid_argument("a potential with walls does not read how surfaces slide: " + potential.id);
     laws_.push_back({type, ContactLaw(potential, laws_.size(), cells.wall_contacts, cells.cells.size())});
     remembers_ = remembers_ || laws_.back().law.remembers();
+    reach = std::max(reach, laws_.back().law.cutoff());
   }
+  if (!region) return;
+  const RegionPointer<D> all = intersection<D>({std::move(region), between_walls(domain)});
+  walls_.push_back({.axis = 0, .border = std::make_shared<const NearBorder<D>>(all, domain, reach)});
 }
 
 template <int D>
@@ -38,8 +39,9 @@ void WallContacts<D>::find(const ContactLaw& law, int cell, int wall, const Cell
   contacts.values.clear();
   const CellRange& range = cells.cells[cell];
   for (int i = range.first; i < range.end(); ++i) {
-    const auto [distance, away] = walls_[wall](vector_at<D>(cells.position, i));
-    if (!(distance <= law.cutoff())) continue;
+    const auto nearest = walls_[wall](vector_at<D>(cells.position, i));
+    if (!nearest || !(nearest->value <= law.cutoff())) continue;
+    const auto& [distance, away] = *nearest;
     contacts.node.push_back(i);
     contacts.away.push_back(away);
     contacts.values.distance.push_back(std::max(distance, least_distance));
@@ -113,6 +115,21 @@ std::string WallContacts<D>::without_energy() const {
   return {};
 }
 
+template <int D>
+std::optional<BeyondWall> find_beyond_wall(const CellNodes& cells, const NearBorder<D>& border) {
+  for (const int cell : cells.own_cells()) {
+    std::optional<BeyondWall> deepest;
+    for (int i = cells.cells[cell].first; i < cells.cells[cell].end(); ++i) {
+      const auto nearest = border.at(vector_at<D>(cells.position, i));
+      if (nearest && -nearest->value > (deepest ? deepest->depth : 0)) deepest = {cell, i, -nearest->value};
+    }
+    if (deepest) return deepest;
+  }
+  return std::nullopt;
+}
+
+template std::optional<BeyondWall> find_beyond_wall(const CellNodes&, const NearBorder<2>&);
+template std::optional<BeyondWall> find_beyond_wall(const CellNodes&, const NearBorder<3>&);
 template class WallContacts<2>;
 template class WallContacts<3>;
 

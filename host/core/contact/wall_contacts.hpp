@@ -1,6 +1,8 @@
 // Forces between cells and walls: potentials integrated over the part of a membrane that is near a wall.
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -10,30 +12,31 @@
 #include "core/domain/domain.hpp"
 #include "core/domain/ranks.hpp"
 #include "core/domain/vec.hpp"
-#include "core/geometry/region.hpp"
+#include "core/geometry/near_border.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/surface/surfaces.hpp"
 
 namespace rouleau::core {
 
-/// A wall as a potential sees it: how far a place is from it, and which way leads away from it.
+/// A wall as a potential sees it: how far a place is from it, and which way leads away from it; none: for certain too
+/// far to matter.
 template <int D>
 struct Wall {
   int axis;                      ///< that a plane lies across; 0: what closes a region
   double place = 0, inward = 0;  ///< of a plane: along its axis; 1 where the fluid lies above it, -1 below
-  RegionPointer<D> region = {};
+  std::shared_ptr<const NearBorder<D>> border = {};
 
-  [[nodiscard]] Distance<D> operator()(const Vec<D>& at) const {
-    if (axis == 0) return region->distance(at);
-    return {inward * (at[axis] - place), inward * Vec<D>::Unit(axis)};
+  [[nodiscard]] std::optional<Distance<D>> operator()(const Vec<D>& at) const {
+    if (axis == 0) return border->at(at);
+    return Distance<D>{inward * (at[axis] - place), inward * Vec<D>::Unit(axis)};
   }
 };
 
 /// Node i with rest measure w (in two dimensions a length, in three an area) at distance r of a wall: energy w phi(r),
 /// force w f(r) away from the wall. At a contact of two cells the weight is w/2, for each of the two has nodes; a wall
 /// has none, so that a membrane's own count whole (docs: physics, interaction). Walls lie across the axes that are not
-/// periodic, each of its own; what closes a region is one wall with those planes: the nearest place of all counts. Walls
-/// take the reaction, normal to themselves.
+/// periodic, each of its own; what closes a region is one wall with those planes: the nearest place of all counts.
+/// Walls take the reaction, normal to themselves.
 template <int D>
 class WallContacts {
  public:
@@ -80,6 +83,15 @@ class WallContacts {
   bool remembers_ = false;
   std::vector<Wall<D>> walls_;
 };
+
+/// A node of a cell that has gone through what closes a region.
+struct BeyondWall {
+  int cell, node;
+  double depth;  ///< spacings
+};
+/// Of this rank's cells the first one with such a node, and its deepest one. `border`: with any reach.
+template <int D>
+std::optional<BeyondWall> find_beyond_wall(const CellNodes& cells, const NearBorder<D>& border);
 
 extern template class WallContacts<2>;
 extern template class WallContacts<3>;

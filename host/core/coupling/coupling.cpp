@@ -1,5 +1,6 @@
 #include "coupling.hpp"
 
+#include <stdexcept>
 #include <type_traits>
 
 #include "stencils.hpp"
@@ -14,8 +15,12 @@ constexpr int many_nodes = 4000;              // whose forces and weights do not
 }  // namespace
 
 template <class T, int D>
-Coupling<T, D>::Coupling(KernelKind kernel, const Domain<D>& domain)
-    : loops_(StencilLoops<T, D>::of(kernel)), domain_(domain) {}
+Coupling<T, D>::Coupling(KernelKind kernel, const Domain<D>& domain, const SolidNodes<D>* solid,
+                         const RegionPointer<D>& region)
+    : loops_(StencilLoops<T, D>::of(kernel)), domain_(domain) {
+  if (solid != nullptr && !region) throw std::invalid_argument("cells beside solid nodes need the region of the fluid");
+  if (solid != nullptr) reach_ = std::make_unique<const WallReach<D>>(domain, *solid, *region, loops_->points);
+}
 
 template <class T, int D>
 void Coupling<T, D>::reserve(const Cells<D>& cells) {
@@ -25,6 +30,9 @@ void Coupling<T, D>::reserve(const Cells<D>& cells) {
     for (auto* values : {&p_[k], &q_[k]}) *values = PagedArray<T>(nodes);
   }
   bases_.assign(cells.cells.size(), {0, 0});
+  if (!reach_) return;
+  factors_ = PagedArray<double>(nodes);
+  beside_wall_.assign(cells.cells.size(), 0);
 }
 
 template <class T, int D>
@@ -40,6 +48,28 @@ void Coupling<T, D>::locate(Worker worker, const Cells<D>& cells, const Vectors&
     task.begin = cells.cells[c].first, task.end = cells.cells[c].end();
     loops_->locate(&task);
     bases_[c] = {static_cast<int>(task.lowest), static_cast<int>(task.highest)};
+    if (reach_) find_factors(cells.cells[c], c);
+  }
+}
+
+template <class T, int D>
+std::array<StencilAlong, D> Coupling<T, D>::stencil(int node) const {
+  std::array<StencilAlong, D> stencil;
+  for (int k = 0; k < D; ++k) stencil[k] = loops_->along(base_[k][node], p_[k][node], q_[k][node]);
+  return stencil;
+}
+
+template <class T, int D>
+void Coupling<T, D>::find_factors(const CellRange& cell, int number) {
+  beside_wall_[number] = 0;
+  for (int i = cell.first; i < cell.end(); ++i) {
+    factors_[i] = 1;
+    if (base_[D - 1][i] == outside) continue;
+    std::array<int, D> first;
+    for (int k = 0; k < D; ++k) first[k] = base_[k][i] + loops_->first;
+    if (!reach_->touches(first)) continue;
+    factors_[i] = reach_->factor(stencil(i));
+    beside_wall_[number] = 1;
   }
 }
 
@@ -58,7 +88,6 @@ void Coupling<T, D>::spread(Range rows, const Cells<D>& cells, const Vectors& fo
   SpreadTask<T, D> task{};
   describe(task, force);
   for (int k = 0; k < D; ++k) {
-    task.force[k] = forces[k];
     task.origin[k] = force[k].row(std::array<int, D - 1>{}) - first_of_block(force[k]);
   }
   task.domain = &domain_;
@@ -72,11 +101,20 @@ void Coupling<T, D>::spread(Range rows, const Cells<D>& cells, const Vectors& fo
       if (!cells.reaches(c)) continue;
       const int lowest = bases_[c].lowest + loops_->first, beyond = bases_[c].highest + loops_->first + loops_->points;
       const bool whole = lowest >= 0 && beyond <= domain_.size[D - 1];  // no stencil reaches over a border
-      if (!whole || (beyond > begin && lowest < end)) function(cells.cells[c]);
+      if (!whole || (beyond > begin && lowest < end)) function(cells.cells[c], c);
     }
   };
-  if (D == 2 && cells.node_count() > many_nodes) for_cells([&](const CellRange& cell) { warm(cell, forces); });
-  for_cells([&](const CellRange& cell) {
+  if (D == 2 && cells.node_count() > many_nodes) for_cells([&](const CellRange& cell, int) { warm(cell, forces); });
+  std::array<std::vector<double>, D> scaled;  // of a cell
+  for_cells([&](const CellRange& cell, int c) {
+    const bool beside_wall = reach_ && beside_wall_[c] != 0;
+    for (int k = 0; k < D; ++k) {
+      task.force[k] = forces[k];
+      if (!beside_wall) continue;
+      scaled[k].assign(forces[k] + cell.first, forces[k] + cell.end());
+      for (int i = 0; i < cell.count; ++i) scaled[k][i] *= factors_[cell.first + i];
+      task.force[k] = scaled[k].data() - cell.first;
+    }
     task.begin = cell.first, task.end = cell.end();
     loops_->spread(&task);
   });
@@ -109,30 +147,40 @@ void Coupling<T, D>::interpolate(Worker worker, Cells<D>& cells, const VectorFie
   if (domain_.whole()) {
     const Range nodes = cells.node_share(worker);
     task.begin = nodes.begin, task.end = nodes.end;
-    return loops_->interpolate(&task);
+    loops_->interpolate(&task);
+    for (int k = 0; k < D && reach_; ++k) {
+      for (int i = nodes.begin; i < nodes.end; ++i) task.velocity[k][i] *= factors_[i];
+    }
+    return;
   }
   task.block = &domain_.block;
   for (const int c : cells.known_cells(worker)) {
     if (!cells.reaches(c) || !cells.is(c, whose)) continue;
     task.begin = cells.cells[c].first, task.end = cells.cells[c].end();
     loops_->interpolate(&task);
+    for (int i = task.begin; i < task.end && reach_ && beside_wall_[c] != 0; ++i) {
+      for (int k = 0; k < D && domain_.block.contains(base(i)); ++k) task.velocity[k][i] *= factors_[i];
+    }
   }
 }
 
 template <class T, int D>
-WallForces<D> Coupling<T, D>::wall_share(const Cells<D>& cells, const Vectors& force, const SolidNodes<D>* solid,
-                                         const Ranks<D>& ranks) const {
+WallForces<D> Coupling<T, D>::wall_share(const Cells<D>& cells, const Vectors& force, const Ranks<D>& ranks) const {
   WallForceSums<D> sums;
-  for (const int c : cells.own_cells()) {
+  for (const int c : cells.known_cells()) {
+    if (!cells.reaches(c)) continue;
     for (int i = cells.cells[c].first; i < cells.cells[c].end(); ++i) {
-      if (base_[D - 1][i] == outside) continue;
+      // Each node is one block's.
+      if (base_[D - 1][i] == outside || !domain_.block.contains(base(i))) continue;
+      const std::array<StencilAlong, D> of_stencil = stencil(i);
       std::array<double, D> of_node;
-      std::array<StencilAlong, D> stencil;
-      for (int k = 0; k < D; ++k) {
-        of_node[k] = force[k][i];
-        stencil[k] = loops_->along(base_[k][i], p_[k][i], q_[k][i]);
+      std::array<int, D> first;
+      for (int k = 0; k < D; ++k) of_node[k] = force[k][i], first[k] = of_stencil[k].first;
+      if (reach_ && reach_->touches(first)) {
+        reach_->add_share(of_node, of_stencil, sums);
+      } else {
+        add_wall_share<D>(of_node, of_stencil, domain_, sums);
       }
-      add_wall_share<D>(of_node, stencil, domain_, solid, sums);
     }
   }
   return sums.total(ranks);
@@ -163,6 +211,7 @@ void Coupling<T, D>::forget(std::span<const Range> nodes) {
     release(base_[k], nodes);
     for (auto* values : {&p_[k], &q_[k]}) release(*values, nodes);
   }
+  if (reach_) release(factors_, nodes);
 }
 
 template class Coupling<float, 2>;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "base/worker.hpp"
@@ -12,6 +13,7 @@
 #include "core/fluid/walls.hpp"
 #include "core/surface/surfaces.hpp"
 #include "kernel_kind.hpp"
+#include "wall_reach.hpp"
 
 namespace rouleau::core {
 
@@ -19,14 +21,17 @@ template <class T, int D>
 struct StencilLoops;
 
 /// Immersed-boundary coupling. Rows lie along x, as row_of() counts them in the block. Forces go to the nodes of the
-/// lattice that a stencil's are images of; velocities are read from the halo, too, which the fluid fills.
+/// lattice that a stencil's are images of; velocities are read from the halo, too, which the fluid fills. Where solid
+/// nodes are in reach both are scaled (WallReach).
 template <class T, int D>
 class Coupling {
  public:
   /// A number along each axis, of all nodes.
   using Vectors = std::array<const double*, D>;
 
-  Coupling(KernelKind kernel, const Domain<D>& domain);
+  /// `solid`, `region`: walls of any shape; null: none.
+  Coupling(KernelKind kernel, const Domain<D>& domain, const SolidNodes<D>* solid = nullptr,
+           const RegionPointer<D>& region = {});
 
   /// Makes room for these nodes; to be called once, before the first locate().
   void reserve(const Cells<D>& cells);
@@ -39,10 +44,8 @@ class Coupling {
   /// Pass over cells: sets the velocities of the nodes whose base node lies in the block, of cells that reach it.
   void interpolate(Worker worker, Cells<D>& cells, const VectorField<T, D>& velocity, Whose whose = Whose::own) const;
 
-  /// What of these forces of this rank's cells acts on walls and not on the fluid, of all ranks together. Not a pass.
-  /// `solid`: walls of any shape; null: none.
-  [[nodiscard]] WallForces<D> wall_share(const Cells<D>& cells, const Vectors& force, const SolidNodes<D>* solid,
-                                         const Ranks<D>& ranks) const;
+  /// What of these forces of all nodes acts on walls and not on the fluid, of all ranks together. Not a pass.
+  [[nodiscard]] WallForces<D> wall_share(const Cells<D>& cells, const Vectors& force, const Ranks<D>& ranks) const;
 
   /// The node of the lattice below a membrane node: that of the block which computes its velocity.
   [[nodiscard]] std::array<int, D> base(int node) const {
@@ -68,6 +71,9 @@ class Coupling {
   /// Sets what tasks of all loops have: stencils, and strides of the fields.
   template <class Task>
   void describe(Task& task, const VectorField<T, D>& fields) const;
+  [[nodiscard]] std::array<StencilAlong, D> stencil(int node) const;
+  /// Sets factors_ of a cell that has been located.
+  void find_factors(const CellRange& cell, int number);
   /// Reads what spreading will read of a cell.
   void warm(const CellRange& cell, const Vectors& vectors) const;
 
@@ -79,6 +85,9 @@ class Coupling {
     int lowest, highest;
   };
   std::vector<BaseRange> bases_;  // of each located cell's nodes along the last axis; `outside` if one has escaped
+  std::unique_ptr<const WallReach<D>> reach_;  // null: plane walls alone
+  PagedArray<double> factors_;                 // of the nodes' forces and velocities; none without reach_
+  std::vector<char> beside_wall_;              // of each located cell, whether a factor is not 1
 };
 
 extern template class Coupling<float, 2>;

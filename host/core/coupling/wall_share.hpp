@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "core/fluid/solid_nodes.hpp"
+#include "core/domain/domain.hpp"
 #include "core/fluid/walls.hpp"
 #include "kernel.hpp"
 
@@ -27,10 +27,10 @@ struct StencilAlong {
 /// takes. For the fluid's velocity there is 2 u_wall - u, so that moving the node costs the wall's motion just that
 /// force. The walls' stress is then exact for any kernel without first moment: a force at the height h acts on the
 /// lower wall by 1 - h/H. Beyond walls across y and z the velocity is u - 2 u_wall: that share is taken from the wall
-/// across y. A solid node keeps all.
+/// across y.
 template <int D>
 void add_wall_share(const std::array<double, D>& force, const std::array<StencilAlong, D>& stencil,
-                    const Domain<D>& domain, const SolidNodes<D>* solid, WallForceSums<D>& sums) {
+                    const Domain<D>& domain, WallForceSums<D>& sums) {
   using Sums = WallForceSums<D>;
   double below[D] = {}, above[D] = {};  // twice the weight there
   for (int k = 1; k < D; ++k) {
@@ -41,32 +41,11 @@ void add_wall_share(const std::array<double, D>& force, const std::array<Stencil
     }
   }
   const double beyond_z = D == 3 ? below[D - 1] + above[D - 1] : 0;
-  double lower = below[1] * (1 - beyond_z), upper = above[1] * (1 - beyond_z), other = beyond_z;
-  if constexpr (D == 3) {
-    if (solid != nullptr) {
-      lower = upper = other = 0;
-      std::array<int, 3> at{};
-      for (at[2] = 0; at[2] < stencil[2].points; ++at[2]) {
-        for (at[1] = 0; at[1] < stencil[1].points; ++at[1]) {
-          for (at[0] = 0; at[0] < stencil[0].points; ++at[0]) {
-            double weight = 1, sign = 1;
-            std::array<int, 3> node;
-            for (int k = 0; k < 3; ++k) {
-              weight *= stencil[k].weight[at[k]];
-              const int place = stencil[k].first + at[k];
-              node[k] = domain.wrapped(k, place);
-              if (node[k] < 0) node[k] = mirrored(place, domain.size[k]), sign = -sign;
-            }
-            other += weight * (solid->at(node) ? 1 : 1 - sign);
-          }
-        }
-      }
-    }
-  }
+  const double lower = below[1] * (1 - beyond_z), upper = above[1] * (1 - beyond_z);
   for (int k = 0; k < D; ++k) {
     if (lower != 0) sums.add(Sums::lower, k, lower * force[k]);
     if (upper != 0) sums.add(Sums::upper, k, upper * force[k]);
-    if (other != 0) sums.add(Sums::other, k, other * force[k]);
+    if (beyond_z != 0) sums.add(Sums::other, k, beyond_z * force[k]);
   }
 }
 

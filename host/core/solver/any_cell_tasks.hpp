@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/contact/wall_contacts.hpp"
 #include "core/fluid/walls.hpp"
 #include "core/membrane/displacement_watch.hpp"
 #include "core/membrane/membrane_energy.hpp"
@@ -44,6 +46,8 @@ class AnyCellTasks {
   [[nodiscard]] virtual int escaped_node() const = 0;
   /// Whether any rank's has.
   [[nodiscard]] virtual bool escaped() const = 0;
+  /// Of this rank's cells the first one with a node beyond what closes the setup's region, which it looks for now.
+  [[nodiscard]] virtual std::optional<BeyondWall> beyond_wall() const = 0;
   /// Of what is now spread, the share that acts on walls and not on the fluid.
   [[nodiscard]] virtual WallForces<D> wall_share() const = 0;
   /// Nodes move otherwise than the lattice's fluid at their places does.
@@ -55,8 +59,8 @@ class AnyCellTasks {
   [[nodiscard]] virtual std::vector<InteractionEnergy> interaction_energies() const = 0;
   /// Of each segment, or triangle, of a cell of this rank's, all laws together.
   [[nodiscard]] virtual std::vector<double> tensions(int cell) = 0;
-  /// What walls do to all cells along y and z.
-  [[nodiscard]] virtual std::array<double, 2> force_from_walls() const = 0;
+  /// What walls do to all cells.
+  [[nodiscard]] virtual std::array<double, 3> force_from_walls() const = 0;
   /// Of a cell: InteractionForces::force_across_images.
   [[nodiscard]] virtual double force_across_images(int cell) const = 0;
 

@@ -30,7 +30,7 @@ CellTasks<T, D>::CellTasks(const BasicSolverSetup<D>& setup, Cells<D>& cells, Fl
       viscosity_field_(cells, viscosity_ratios(setup), slip_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,
                        extra_reach(setup), 1 / setup.tau, setup.domain, fluid.setting().viscosity_of_rows,
                        smooths_edges(setup.kernel, D)),
-      coupling_(setup.kernel, setup.domain) {
+      coupling_(setup.kernel, setup.domain, setup.solid.get(), setup.region) {
   cells_.largest_step.resize(cells_.cells.size(), 0.0);
   if (setup.area_correction) cells_.area_leakage.resize(cells_.cells.size(), 0.0);  // earlier leakage stays
   if (!setup.interactions.empty() || !setup.self_interactions.empty()) {
@@ -39,6 +39,7 @@ CellTasks<T, D>::CellTasks(const BasicSolverSetup<D>& setup, Cells<D>& cells, Fl
   }
   if (!setup.wall_interactions.empty())
     wall_contacts_ = std::make_unique<WallContacts<D>>(cells_, setup.wall_interactions, setup.domain, setup.region);
+  if (setup.region) region_border_ = std::make_unique<const NearBorder<D>>(setup.region, setup.domain, 0);
   if constexpr (D == 3) {
     if (corrects_motion()) normals_ = std::make_unique<SurfaceNormals>(cells_);
   }

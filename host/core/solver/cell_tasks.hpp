@@ -40,7 +40,7 @@ class CellTasks final : public AnyCellTasks<D> {
   /// Pass over rows of the block.
   void spread(Range rows) { coupling_.spread(rows, cells_, spread_forces(), fluid_.force()); }
   [[nodiscard]] WallForces<D> wall_share() const override {
-    return coupling_.wall_share(cells_, spread_forces(), fluid_.setting().solid.get(), ranks_);
+    return coupling_.wall_share(cells_, spread_forces(), ranks_);
   }
   /// The frame of the fluid's unsteady term gets the cells' velocity, as far as the walls allow, if the setup wants
   /// that.
@@ -73,14 +73,18 @@ class CellTasks final : public AnyCellTasks<D> {
   [[nodiscard]] bool escaped() const override {
     return exchange_ ? exchange_->escaped() : coupling_.any_escaped(cells_);
   }
+  [[nodiscard]] std::optional<BeyondWall> beyond_wall() const override {
+    return region_border_ ? find_beyond_wall<D>(cells_, *region_border_) : std::nullopt;
+  }
   [[nodiscard]] MembraneEnergy membrane_energy() override { return forces_.energies(cells_, ranks_); }
   [[nodiscard]] std::vector<double> tensions(int cell) override { return forces_.tensions(cells_, cell); }
   [[nodiscard]] double slight_energy() const override { return slight_energy_; }
   [[nodiscard]] bool corrects_motion() const override { return slip_ || setup_.area_correction; }
   [[nodiscard]] const DisplacementWatch::Memory& viscosity_memory() const override { return viscosity_field_.memory(); }
-  [[nodiscard]] std::array<double, 2> force_from_walls() const override {
-    std::array<double, 2> force{};
-    for (int k = 1; k < D && wall_contacts_; ++k) force[k - 1] = wall_contacts_->net_force(cells_, ranks_, k);
+  [[nodiscard]] std::array<double, 3> force_from_walls() const override {
+    std::array<double, 3> force{};
+    for (int k = setup_.region ? 0 : 1; k < D && wall_contacts_; ++k)  // planes lie along x
+      force[static_cast<std::size_t>(k)] = wall_contacts_->net_force(cells_, ranks_, k);
     return force;
   }
   [[nodiscard]] double force_across_images(int cell) const override {
@@ -115,7 +119,8 @@ class CellTasks final : public AnyCellTasks<D> {
   double slight_energy_;
   std::unique_ptr<Interactions<D>> interactions_;
   std::unique_ptr<WallContacts<D>> wall_contacts_;
-  std::unique_ptr<SurfaceNormals> normals_;  ///< of surfaces that something is corrected of
+  std::unique_ptr<const NearBorder<D>> region_border_;  ///< null without a region
+  std::unique_ptr<SurfaceNormals> normals_;             ///< of surfaces that something is corrected of
   ViscosityField<T, D> viscosity_field_;
   Coupling<T, D> coupling_;
 };

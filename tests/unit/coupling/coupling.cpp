@@ -80,7 +80,7 @@ double adjointness_error(const Coupling<T, 2>& coupling, Membranes& m, const cor
   const WallVelocity walls{0.3, -0.7};
   for (int y = 0; y < ny; ++y) fill_velocity_halo<T, 2>(velocity, {y}, domain, walls);
   coupling.interpolate({}, m, velocity);
-  const WallForces<2> share = coupling.wall_share(m, m.forces(), nullptr, {});
+  const WallForces<2> share = coupling.wall_share(m, m.forces(), {});
   error += share.lower[0] * walls.lower + share.upper[0] * walls.upper;
   double lost[2] = {-share.all(0), -share.all(1)};
   for (std::size_t i = 0; i < m.position[0].size(); ++i) lost[0] += m.force[0][i], lost[1] += m.force[1][i];
