@@ -6,10 +6,12 @@
 #include <map>
 
 #include "center_grid.hpp"
+#include "core/geometry/formulas.hpp"
 #include "extent.hpp"
 #include "outline.hpp"
 #include "rigid_outline.hpp"
 #include "rigid_surface.hpp"
+#include "vessel.hpp"
 
 namespace rouleau::shape {
 
@@ -22,11 +24,14 @@ constexpr int fewest_sweeps = 50;
 constexpr int patience = 1000, most_sweeps = 20000;
 constexpr double least_progress = 0.05;
 
+/// Draws of a place that lies in the fluid between walls of any shape.
+constexpr int most_draws = 10000;
+
 /// In a tube a region is a piece of it.
 double region_content(const scene::RandomPacking& packing, const scene::Domain& domain) {
   const scene::Vector size = packing.upper - packing.lower;
   if (domain.tube_radius) return domain.content() * size.x() / domain.size.x();
-  return size.product();
+  return domain.has_shapes() ? fluid_content(domain, packing.lower, packing.upper) : size.product();
 }
 
 /// Where the cells of one packing may be, and how near to others.
@@ -34,7 +39,7 @@ template <int D>
 struct Territory {
   std::array<Axis, D> axes;  ///< nodes stay between lower and upper unless periodic
   double gap;                ///< to walls, obstacles and cells of the same packing; allowances included
-  double radius = 0;         ///< in a tube: how far from its axis nodes may be
+  double from_walls;         ///< likewise, of nodes to walls of a tube or of any shape: what lies between them, too
 };
 
 /// Solid: RigidOutline or RigidSurface.
@@ -55,6 +60,19 @@ class Packer {
       if (!is_new) continue;
       allowance_ = std::max(allowance_, solid->second.allowance());
       largest_ = std::max(largest_, solid->second.radius());
+    }
+    if (domain.has_shapes()) {
+      region_ = core::magnified<D>(domain.region<D>(), 1 / unit, core::Vec<D>::Zero());
+      for (const Place<D>& place : wall_pieces<D>(domain)) {
+        Place<D>& piece = pieces_.emplace_back();
+        for (int k = 0; k < D; ++k) piece[k] = place[k] / unit;
+      }
+    }
+    if constexpr (D == 3) {
+      if (domain.tube_radius)
+        region_ =
+            core::extruded(core::ball_region<2>({0.5 * box_[1].upper, 0.5 * box_[2].upper}, *domain.tube_radius / unit),
+                           0, -INFINITY, INFINITY);
     }
     double gap = 0;
     for (const scene::RandomPacking& packing : packings) {
@@ -106,9 +124,10 @@ class Packer {
       if (!box.periodic) own = {std::max(own.lower, gap), std::min(own.upper, box.upper - gap), false};
       return own;
     };
-    Territory<D> own{{}, gap};
+    Territory<D> own{{}, gap, gap};
+    for (const auto& [type, solid] : solids_)
+      own.from_walls = std::max(own.from_walls, gap + solid.between_samples(packing.gap / unit_));
     for (int k = 0; k < D; ++k) own.axes[k] = axis(packing.lower[k], packing.upper[k], box_[k]);
-    if (domain_.tube_radius) own.radius = std::max(*domain_.tube_radius / unit_ - gap, 0.0);
     return own;
   }
 
@@ -120,13 +139,20 @@ class Packer {
     grid_->add(i, body.center);
   }
 
+  void draw_center(Body& body, const Territory<D>& own) {
+    for (int draw = 0; draw < most_draws; ++draw) {
+      for (int k = 0; k < D; ++k) body.center[k] = own.axes[k].lower + own.axes[k].length() * numbers_.below_one();
+      if (!domain_.has_shapes() || from_walls(body.center) > 0) return;
+    }
+  }
+
   /// Draws places for a new cell, smaller and smaller, until one is free.
   bool insert(std::size_t i) {
     const Territory<D>& own = territories_[owner_[i]];
     Body body{&solids_.at(cells_[i].type), {}, {}, 1};
     for (; body.scale > smallest_scale; body.scale *= shrinking) {
       for (int trial = 0; trial < tries_at_a_size; ++trial) {
-        for (int k = 0; k < D; ++k) body.center[k] = own.axes[k].lower + own.axes[k].length() * numbers_.below_one();
+        draw_center(body, own);
         body.orientation = Solid::drawn(numbers_);
         if (!is_free(i, body)) continue;
         bodies_[i] = body;
@@ -227,17 +253,34 @@ class Packer {
       surely =
           surely && (axis.periodic || (body.center[k] - radius >= axis.lower && body.center[k] + radius <= axis.upper));
     }
-    if (surely && !domain_.tube_radius) return true;
-    return std::all_of(body.solid->nodes().begin(), body.solid->nodes().end(), [&](const auto& node) {
+    const auto place_of = [&](const auto& node) {
       Place<D> place = rotated(body.orientation, node);
+      for (int k = 0; k < D; ++k) place[k] = body.center[k] + body.scale * place[k];
+      return place;
+    };
+    const auto in_box = [&](const auto& node) {
+      const Place<D> place = place_of(node);
       for (int k = 0; k < D; ++k) {
-        place[k] = body.center[k] + body.scale * place[k];
         if (!own.axes[k].periodic && !(place[k] >= own.axes[k].lower && place[k] <= own.axes[k].upper)) return false;
       }
-      double square = 0;  // of the distance from the axis of a tube
-      for (int k = 1; k < D; ++k) square += std::pow(place[k] - 0.5 * box_[k].upper, 2);
-      return !domain_.tube_radius || square <= own.radius * own.radius;
-    });
+      return true;
+    };
+    if (!surely && !std::all_of(body.solid->nodes().begin(), body.solid->nodes().end(), in_box)) return false;
+    if (!region_ || from_walls(body.center) >= radius + own.from_walls) return true;
+    return body.solid->all_samples([&](const auto& sample, double reach) {
+      return from_walls(place_of(sample)) >= own.from_walls + body.scale * reach;
+    }) && std::none_of(pieces_.begin(), pieces_.end(), [&](Place<D> piece) {
+             for (int k = 0; k < D; ++k) {
+               piece[k] -= body.center[k];
+               if (box_[k].periodic) piece[k] -= box_[k].length() * std::round(piece[k] / box_[k].length());
+             }
+             return encloses(body, piece);
+           });
+  }
+
+  /// Distance to the walls of a tube or of any shape, or less.
+  [[nodiscard]] double from_walls(const Place<D>& place) const {
+    return region_->distance(core::Vec<D>(place.data())).value;
   }
 
   [[nodiscard]] std::size_t smallest_cell() const {
@@ -287,6 +330,8 @@ class Packer {
   std::array<Axis, D> box_;
   std::map<int, Solid> solids_;  ///< by type, of those that have cells
   double allowance_ = 0, largest_ = 0;
+  core::RegionPointer<D> region_;          ///< of a tube, or between walls of any shape; null: there are no such walls
+  std::vector<Place<D>> pieces_;           ///< a place in each piece of walls of any shape
   std::vector<Territory<D>> territories_;  ///< by packing
   std::optional<CenterGrid<D>> grid_;
   std::vector<int> owner_;  ///< of each cell: its packing, or `obstacle`

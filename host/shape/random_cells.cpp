@@ -44,6 +44,8 @@ void check_lengths(const scene::SceneFields& fields, const scene::RandomPacking&
     fields.refuse(packing.pointer + "/random/gap", "no two cells can be " + micrometres(packing.gap) +
                                                        " apart in a region that is " + room + "; take a smaller gap");
   }
+  if (std::isinf(packing.reached))
+    fields.refuse(packing.pointer + "/random", "no fluid lies in the region of these cells; move it");
   if (packing.reached > 1) {
     fields.refuse(packing.pointer + "/random", "these " + std::to_string(packing.count) + " cells would fill " +
                                                    percent(packing.reached) +

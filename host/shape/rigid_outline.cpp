@@ -42,6 +42,7 @@ RigidOutline::RigidOutline(const scene::CellType& type, double unit, double /*ga
     along_.push_back({to.x - from.x, to.y - from.y});
     inverse_square_.push_back(1 / (along_[i].x * along_[i].x + along_[i].y * along_[i].y));
     radius_ = std::max(radius_, std::sqrt(from.x * from.x + from.y * from.y));
+    half_segment_ = std::max(half_segment_, 0.5 / std::sqrt(inverse_square_[i]));
   }
   area_ = rounded(area_of(all) / (unit * unit));
 
@@ -80,6 +81,11 @@ double RigidOutline::distance(Pair point) const {
     if (from.y > point.y && to.y <= point.y && side < 0) --winding;
   }
   return winding != 0 ? -std::sqrt(square) : std::sqrt(square);
+}
+
+bool encloses(const Body& body, const Place<2>& point) {
+  const Pair seen = turned_back({point[0] / body.scale, point[1] / body.scale}, body.orientation.direction);
+  return !body.solid->keeps(seen, 0);
 }
 
 bool keep_apart(const Body& a, const Body& b, const Place<2>& shift, double gap) {

@@ -1,6 +1,7 @@
 // The outline of a cell as a rigid body that can be turned and scaled, and whether two of them keep a distance.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "rigid_body.hpp"
@@ -36,6 +37,16 @@ class RigidOutline {
   [[nodiscard]] double radius() const { return radius_; }        ///< of the circle about the origin that holds it
   [[nodiscard]] double content() const { return area_; }         ///< enclosed, of the polygon with all its segments
   [[nodiscard]] double allowance() const { return allowance_; }  ///< rounding included
+  /// By how much segments may be nearer to anything than their ends are, which then keep at least `gap` (the argument
+  /// is that of RigidSurface's samples).
+  [[nodiscard]] double between_samples(double gap) const {
+    return half_segment_ < gap ? half_segment_ * half_segment_ / (2 * gap) : half_segment_;
+  }
+  /// Whether keeps(node, 0) holds for all nodes.
+  template <class Keeps>
+  [[nodiscard]] bool all_samples(const Keeps& keeps) const {
+    return std::all_of(nodes_.begin(), nodes_.end(), [&](const Pair& node) { return keeps(node, 0.0); });
+  }
 
   /// Distance of a point to the polygon, negative inside.
   [[nodiscard]] double distance(Pair point) const;
@@ -55,7 +66,7 @@ class RigidOutline {
  private:
   std::vector<Pair> nodes_, along_;
   std::vector<double> inverse_square_;
-  double radius_ = 0, area_ = 0, allowance_ = 0;
+  double radius_ = 0, area_ = 0, allowance_ = 0, half_segment_ = 0;
   // Distances in the middles of count x count squares that cover the outline and some more.
   int count_ = 0;
   double half_width_ = 0, inverse_step_ = 0, half_diagonal_ = 0;
@@ -67,6 +78,9 @@ inline Place<2> rotated(const RigidOutline::Orientation& orientation, Pair node)
   const double c = orientation.direction.x, s = orientation.direction.y;
   return {c * node.x - s * node.y, s * node.x + c * node.y};
 }
+
+/// Whether a body lies around a point, given as it lies from the body's centre.
+bool encloses(const RigidBody<RigidOutline>& body, const Place<2>& point);
 
 /// Whether the outlines of two bodies, the second moved by `shift`, keep the distance `gap` (above 0) and none lies in
 /// the other. Exact for polygons whose thinnest place is wider than a segment is long.

@@ -265,17 +265,29 @@ bool RigidSurface::keeps(const Place<3>& point, double least) const {
   return found >= least && found > half_diagonal_ && *middle > 0;
 }
 
+namespace {
+
+/// The inverse of rotated().
+Place<3> back(const RigidSurface::Orientation& turn, const Place<3>& v) {
+  Place<3> seen;
+  for (int k = 0; k < 3; ++k) seen[k] = turn.rows[0][k] * v[0] + turn.rows[1][k] * v[1] + turn.rows[2][k] * v[2];
+  return seen;
+}
+
+}  // namespace
+
+bool encloses(const RigidBody<RigidSurface>& body, const Place<3>& point) {
+  Place<3> seen = back(body.orientation, point);
+  for (double& component : seen) component /= body.scale;
+  return !body.solid->keeps(seen, 0);
+}
+
 bool keep_apart(const RigidBody<RigidSurface>& a, const RigidBody<RigidSurface>& b, const Place<3>& shift, double gap) {
   const Place<3> between = minus(minus(a.center, b.center), shift);
   const double reach = a.radius() + b.radius() + gap;
   if (dot(between, between) >= reach * reach) return true;
   // Columns of the matrix that turns a as seen from b, with the ratio of their sizes.
   const double ratio = a.scale / b.scale;
-  const auto back = [](const RigidSurface::Orientation& turn, const Place<3>& v) -> Place<3> {
-    Place<3> seen;
-    for (int k = 0; k < 3; ++k) seen[k] = turn.rows[0][k] * v[0] + turn.rows[1][k] * v[1] + turn.rows[2][k] * v[2];
-    return seen;
-  };
   std::array<Place<3>, 3> rows;
   for (int k = 0; k < 3; ++k) {
     const auto& turn = a.orientation.rows;

@@ -37,6 +37,14 @@ class RigidSurface {
   /// Points of the surface, nodes among them.
   [[nodiscard]] const std::vector<Place<3>>& samples() const { return samples_; }
   [[nodiscard]] const BallTree& sample_tree() const { return sample_tree_; }
+  /// What lies between samples: allowance() has it.
+  [[nodiscard]] double between_samples(double /*gap*/) const { return 0; }
+  /// Whether keeps(sample, 0) holds for all samples; those in a ball for which keeps(center, radius) holds are not
+  /// asked.
+  template <class Keeps>
+  [[nodiscard]] bool all_samples(const Keeps& keeps) const {
+    return sample_tree_.all(keeps, [&](int item) { return keeps(samples_[item], 0.0); });
+  }
 
   /// Whether a point lies outside and at least that far from the surface, from a map of distances where that suffices,
   /// else from the triangles. A point outside that is as near as the map is coarse may be denied.
@@ -63,6 +71,10 @@ class RigidSurface {
 
 /// A point of the surface as it lies from the centre of a body of size 1.
 Place<3> rotated(const RigidSurface::Orientation& orientation, const Place<3>& point);
+
+/// Whether a body lies around a point, given as it lies from the body's centre, or nearly so: a point as near to the
+/// surface as the map is coarse may be taken for one inside.
+bool encloses(const RigidBody<RigidSurface>& body, const Place<3>& point);
 
 /// Whether the surfaces of two bodies, the second moved by `shift`, keep the distance `gap` (above 0), up to their
 /// allowance, and none lies in the other.

@@ -5,8 +5,11 @@
 #include <iostream>
 #include <numbers>
 
+#include "core/geometry/faceted.hpp"
+#include "core/geometry/formulas.hpp"
 #include "core/membrane/membranes.hpp"
 #include "plan/placed_cells.hpp"
+#include "shape/extent.hpp"
 #include "shape/outline.hpp"
 #include "unit/shape/packing_fixture.hpp"
 
@@ -261,4 +264,123 @@ TEST_CASE(
                                                                      packed.scene.cell_types[0], packed.scene.domain)
                                                  : 1));
   }
+}
+
+namespace {
+
+/// A vessel's wall in a box that is periodic along x, as region of the fluid that shape::build_walls() would give.
+Packed in_vessel(int nx, int ny, RegionPointer<2> region, double content, std::vector<Shape> shapes) {
+  Packed packed(nx, ny, false, std::move(shapes));
+  packed.scene.domain.within.emplace();
+  packed.scene.domain.region_in_plane = std::move(region);
+  packed.scene.domain.region_content = content;
+  return packed;
+}
+
+/// Calls visit(point) along all outlines, twenty times on each segment.
+template <class Visit>
+void along_outlines(const Scene& scene, Visit visit) {
+  for (const Points& outline : outlines(scene)) {
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      for (int part = 0; part < 20; ++part)
+        visit(Eigen::Vector2d(outline[i] + part / 20.0 * (outline[(i + 1) % outline.size()] - outline[i])));
+    }
+  }
+}
+
+bool holds(const Points& outline, const Eigen::Vector2d& point) {
+  int winding = 0;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d from = outline[i] - point, to = outline[(i + 1) % outline.size()] - point;
+    const double side = from.x() * to.y() - from.y() * to.x();
+    if (from.y() <= 0 && to.y() > 0 && side > 0) ++winding;
+    if (from.y() > 0 && to.y() <= 0 && side < 0) --winding;
+  }
+  return winding != 0;
+}
+
+}  // namespace
+
+TEST_CASE("cells in a round vessel keep their gap from its wall, from posts and from a plate thinner than a segment") {
+  const double radius = 18 * um, post = 0.6 * um, gap = 0.25 * um;
+  const Eigen::Vector2d middle(20 * um, 20 * um), lower(14 * um, 27.3 * um), upper(22 * um, 27.5 * um);
+  std::vector<Eigen::Vector2d> posts;
+  for (int i = 0; i < 9; ++i) posts.emplace_back((13 + 7 * (i % 3)) * um, (11 + 6 * (i / 3)) * um);
+  std::vector<RegionPointer<2>> parts{ball_region<2>(middle, radius), outside_of(box_region<2>(lower, upper))};
+  for (const auto& place : posts) parts.push_back(outside_of(ball_region<2>(place, post)));
+  const double content = std::numbers::pi * (radius * radius - 9 * post * post) - (upper - lower).prod();
+  // Of 40 segments each is 0.6 um long: three times as long as the plate is thick, and twice the gap.
+  Packed packed = in_vessel(200, 200, intersection(parts), content, {Ellipse{{4 * um, 2.5 * um}}});
+  packed.scene.cell_types[0].segments = 40;
+  packed.hematocrit(0, 0.3, 3, gap).run();
+  REQUIRE_FALSE(packed.shortfall);
+  double wall = 1, enclosed = 0;
+  along_outlines(packed.scene, [&](const Eigen::Vector2d& point) {
+    wall = std::min(wall, radius - (point - middle).norm());
+    for (const auto& place : posts) wall = std::min(wall, (point - place).norm() - post);
+    const Eigen::Vector2d beyond = (lower - point).cwiseMax(point - upper).cwiseMax(0);
+    wall = std::min(wall, beyond.norm());
+  });
+  CHECK(wall >= gap);
+  CHECK(wall <= 1.5 * gap);
+  int around = 0;
+  for (const Points& outline : outlines(packed.scene)) {
+    enclosed += area(outline);
+    for (const auto& place : posts) around += holds(outline, place) ? 1 : 0;
+    around += holds(outline, 0.5 * (lower + upper)) ? 1 : 0;
+  }
+  CHECK(around == 0);
+  CHECK(smallest_gap_of_all(packed.scene) >= gap);
+  const double cell = enclosed / static_cast<double>(packed.scene.cells.size());
+  CHECK(std::abs(enclosed - 0.3 * content) <= 0.5 * cell * (1 + 1e-6));
+}
+
+TEST_CASE("cells in a channel that forks fill both branches and cross no wall") {
+  // A channel of 14 um that parts into two of 7 um around an island, along x from end to end; images are its ends.
+  const double length = 60 * um, gap = 0.3 * um;
+  const Points island{{20 * um, 15 * um}, {30 * um, 8 * um},  {42 * um, 8 * um},
+                      {48 * um, 15 * um}, {42 * um, 22 * um}, {30 * um, 22 * um}};
+  Border<2> border;
+  for (std::size_t i = 0; i < island.size(); ++i) {
+    border.corners.push_back(island[i]);
+    border.facets.push_back({static_cast<int>(i), static_cast<int>((i + 1) % island.size())});
+  }
+  const auto channel = box_region<2>({-INFINITY, 1 * um}, {INFINITY, 29 * um});
+  const auto region = intersection<2>({channel, outside_of<2>(std::make_shared<FacetedRegion<2>>(std::move(border)))});
+  const double content = length * 28 * um - area(island);
+  Packed packed = in_vessel(300, 150, region, content, {Biconcave{3.91 * um}});
+  packed.hematocrit(0, 0.25, 5, gap).run();
+  REQUIRE_FALSE(packed.shortfall);
+  double wall = 1;
+  along_outlines(packed.scene, [&](const Eigen::Vector2d& point) {
+    wall = std::min({wall, point.y() - 1 * um, 29 * um - point.y()});
+    for (const double shift : {-length, 0.0, length})
+      wall =
+          std::min(wall, holds(island, point - Eigen::Vector2d(shift, 0)) ? -1 : distance(point, island, {shift, 0}));
+  });
+  CHECK(wall >= gap);
+  int above = 0, below = 0;
+  for (const CellPlacement& cell : packed.scene.cells) {
+    if (cell.center.x() > 28 * um && cell.center.x() < 44 * um) ++(cell.center.y() > 15 * um ? above : below);
+  }
+  CHECK(above > 0);
+  CHECK(below > 0);
+}
+
+TEST_CASE("a region of a vessel holds what fluid lies in it") {
+  const double radius = 18 * um, middle = 20 * um, whole = std::numbers::pi * radius * radius;
+  const double exact = [&](double x) {  // of a disc, from its left end to x
+    const double from = x - middle;
+    return whole / 2 + from * std::sqrt(radius * radius - from * from) + radius * radius * std::asin(from / radius);
+  }(31 * um);
+  const auto off = [&](int nodes) {
+    Packed packed = in_vessel(nodes, nodes, ball_region<2>({middle, middle}, radius), whole, {Circle{2 * um}});
+    packed.scene.domain.size = {40 * um, 40 * um};
+    RandomPacking& part = packed.count(0, 10, 1, 0.2e-6).scene.packings[0];
+    part.upper.x() = 31 * um;
+    const double cell = enclosed_by(packed.scene.cell_types[0]);
+    return 10 * cell / hematocrit_of(part, packed.scene.cell_types[0], packed.scene.domain) / exact - 1;
+  };
+  CHECK(std::abs(off(40)) < 1e-3);
+  CHECK(std::abs(off(160)) < 1e-4);
 }

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <numbers>
 
+#include "core/geometry/formulas.hpp"
 #include "plan/placed_cells.hpp"
 #include "shape/extent.hpp"
 #include "shape/rigid_surface.hpp"
@@ -339,4 +340,44 @@ TEST_CASE("what does not fit in space is said, with the hematocrit that was reac
   CHECK(packed.shortfall->packing == 0);
   CHECK(packed.shortfall->hematocrit > 0.1);
   CHECK(packed.shortfall->hematocrit < 0.8);
+}
+
+TEST_CASE("cells are packed into a ball, around small balls in it") {
+  using rouleau::core::ball_region;
+  const double radius = 11 * um, small = 0.8 * um, gap = 0.3 * um;
+  const Vec<3> middle = Vec<3>::Constant(12 * um);
+  std::vector<Vec<3>> balls;
+  for (int i = 0; i < 8; ++i)
+    balls.push_back(middle + 4 * um * Vec<3>(i % 2 * 2 - 1, i / 2 % 2 * 2 - 1, i / 4 * 2 - 1));
+  std::vector<rouleau::core::RegionPointer<3>> parts{ball_region<3>(middle, radius)};
+  for (const Vec<3>& place : balls) parts.push_back(outside_of(ball_region<3>(place, small)));
+  Packed packed({48, 48, 48}, false, false);
+  Domain& domain = packed.scene.domain;
+  domain.within.emplace();
+  domain.region_in_space = intersection(parts);
+  domain.region_content = 4 * std::numbers::pi / 3 * (std::pow(radius, 3) - 8 * std::pow(small, 3));
+  packed.hematocrit(0, 0.2, 4, gap).run();
+  REQUIRE_FALSE(packed.shortfall);
+  CHECK(std::abs(static_cast<double>(packed.scene.cells.size()) * enclosed_by(packed.scene.cell_types[0]) /
+                     domain.region_content -
+                 0.2) <= 0.5 * enclosed_by(packed.scene.cell_types[0]) / domain.region_content * (1 + 1e-6));
+  double wall = 1;
+  int around = 0;
+  for (const Placed& cell : placed_cells(packed.scene)) {
+    std::vector<double> solid_angle(balls.size(), 0.0);
+    for (const auto& [a, b, c] : cell.surface.triangles) {
+      const Vec<3> corners[] = {cell.surface.nodes[a], cell.surface.nodes[b], cell.surface.nodes[c]};
+      for (std::size_t i = 0; i < balls.size(); ++i) {
+        wall = std::min(wall, distance_to_triangle(balls[i], corners[0], corners[1], corners[2]) - small);
+        const Vec<3> p = corners[0] - balls[i], q = corners[1] - balls[i], r = corners[2] - balls[i];
+        solid_angle[i] += 2 * std::atan2(p.dot(q.cross(r)), p.norm() * q.norm() * r.norm() + p.dot(q) * r.norm() +
+                                                                p.dot(r) * q.norm() + q.dot(r) * p.norm());
+      }
+      for (const Vec<3>& corner : corners) wall = std::min(wall, radius - (corner - middle).norm());
+    }
+    for (const double angle : solid_angle) around += std::abs(angle) > 1 ? 1 : 0;
+  }
+  CHECK(wall >= gap);
+  CHECK(wall <= 2 * gap);
+  CHECK(around == 0);
 }
