@@ -132,12 +132,6 @@ std::vector<double> smallest_gaps(core::Surroundings<2>& around, const core::Dom
   return gaps;
 }
 
-double wall_gap(const core::Membranes& m, const core::CellRange& cell, const core::Domain<2>& domain) {
-  if (!domain.walled(1)) return std::nan("");
-  const core::BoundingBox<2> box = core::box_of<2>(m, cell);
-  return box.usable() ? std::min(box.least[1] + 0.5, domain.size[1] - 0.5 - box.most[1]) : std::nan("");
-}
-
 Aggregates find_aggregates(int cells, const std::vector<CellContact>& contacts) {
   Aggregates result;
   result.label.resize(static_cast<std::size_t>(cells));

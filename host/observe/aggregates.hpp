@@ -33,9 +33,6 @@ std::vector<double> smallest_gaps(core::Surroundings<2>& around, const core::Dom
 /// The same of surfaces, up to half of the shortest period.
 std::vector<double> smallest_gaps(core::Surroundings<3>& around, const core::Domain<3>& domain);
 
-/// Smallest distance of a cell's outline to a wall (spacings), negative beyond it; NaN without walls.
-double wall_gap(const core::Membranes& membranes, const core::CellRange& cell, const core::Domain<2>& domain);
-
 struct Aggregates {
   int count = 0;
   std::vector<int> label;           ///< of each cell: smallest index in its aggregate

@@ -1,8 +1,11 @@
 // The layers beside the walls that no cell reaches.
 #pragma once
 
+#include <vector>
+
 #include "core/domain/domain.hpp"
 #include "core/domain/ranks.hpp"
+#include "core/geometry/region.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/surface/surfaces.hpp"
 
@@ -28,5 +31,20 @@ CellFreeLayer cell_free_layer(const core::Surfaces& surfaces, const core::Domain
 /// counts where a ray meets no membrane.
 CellFreeLayer cell_free_layer_in_tube(const core::Surfaces& surfaces, const core::Domain<3>& domain, double radius,
                                       const core::Ranks<3>& ranks = {});
+
+/// A point of a wall, with its share of the surface, and how far into the fluid this wall stays the nearest one.
+template <int D>
+struct WallPoint {
+  core::Vec<D> place;
+  double size, half_width;
+};
+/// At most about ten thousand points, evenly over all walls across a domain and those of a region.
+template <int D>
+std::vector<WallPoint<D>> wall_points(const core::RegionPointer<D>& region, const core::Domain<D>& domain);
+/// At walls of any shape: mean over these points of the distance to the nearest node of a membrane; the half width counts
+/// where none is nearer. Lower and upper are the same.
+template <int D>
+CellFreeLayer cell_free_layer_at(const std::vector<WallPoint<D>>& walls, const core::CellNodes& cells,
+                                 const core::Domain<D>& domain, const core::Ranks<D>& ranks = {});
 
 }  // namespace rouleau::observe

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "aggregates.hpp"
+#include "core/contact/wall_gap.hpp"
 
 namespace rouleau::observe {
 
@@ -14,22 +14,6 @@ constexpr double roundest = 1e-6;
 
 /// The angle of the long axis of a cell, if it has one.
 double long_axis(double angle, double deformation) { return deformation > roundest ? angle : std::nan(""); }
-
-/// Distance of a surface to the nearest wall, spacings, negative beyond it; NaN without walls. `tube_radius`: 0 without
-/// one.
-double wall_gap(const core::Surfaces& surfaces, int cell, const core::Domain<3>& domain, double tube_radius) {
-  if (tube_radius > 0) return tube_radius - core::farthest_from_axis(surfaces, cell, domain);
-  const core::CellRange& range = surfaces.cells[cell];
-  const auto& along = surfaces.position;
-  double gap = std::numeric_limits<double>::infinity();
-  for (int axis = 1; axis < 3; ++axis) {
-    if (!domain.walled(axis)) continue;
-    const auto [least, most] =
-        std::minmax_element(along[axis].begin() + range.first, along[axis].begin() + range.end());
-    gap = std::min({gap, *least + 0.5, domain.size[axis] - 0.5 - *most});
-  }
-  return std::isinf(gap) ? std::nan("") : gap;
-}
 
 /// An axis has no direction: the one whose first component that is not 0 is positive.
 std::array<double, 3> pointed(const core::Vec<3>& axis) {
@@ -58,7 +42,8 @@ int outermost(const core::Surfaces& surfaces, int cell) {
   return farthest;
 }
 
-CellMeasures measure(const core::Membranes& membranes, int cell, const core::Domain<2>& domain) {
+CellMeasures measure(const core::Membranes& membranes, int cell, const core::Domain<2>& domain,
+                     const core::Region<2>* region, int /*marker*/) {
   const core::CellRange& range = membranes.cells[cell];
   const core::Vec<2> center = core::centroid(membranes, range);
   const core::InertiaEllipse ellipse = core::inertia_ellipse(membranes, range);
@@ -70,12 +55,12 @@ CellMeasures measure(const core::Membranes& membranes, int cell, const core::Dom
           .marker = core::marker_angle(membranes, range),
           .area = core::enclosed_area(membranes, range),
           .perimeter = core::perimeter(membranes, range),
-          .wall_gap = wall_gap(membranes, range, domain),
+          .wall_gap = core::wall_gap(membranes, range, domain, region),
           .stretch = core::stretch_range(membranes, range)};
 }
 
-CellMeasures measure(const core::Surfaces& surfaces, int cell, const core::Domain<3>& domain, int marker,
-                     double tube_radius) {
+CellMeasures measure(const core::Surfaces& surfaces, int cell, const core::Domain<3>& domain,
+                     const core::Region<3>* region, int marker) {
   const core::Mesh& mesh = surfaces.type_of(cell).mesh;
   const core::Nodes nodes = surfaces.nodes(cell);
   const core::InertiaEllipsoid ellipsoid = core::inertia_ellipsoid(mesh, nodes);
@@ -87,7 +72,7 @@ CellMeasures measure(const core::Surfaces& surfaces, int cell, const core::Domai
                         .deformation = plane.deformation,
                         .long_axis = long_axis(plane.angle, plane.deformation),
                         .marker = std::atan2(arm.y(), arm.x()),
-                        .wall_gap = wall_gap(surfaces, cell, domain, tube_radius),
+                        .wall_gap = core::wall_gap(surfaces, surfaces.cells[cell], domain, region),
                         .stretch = core::stretch_range(surfaces, cell),
                         .z = ellipsoid.center.z(),
                         .volume = core::enclosed_volume(mesh, nodes),

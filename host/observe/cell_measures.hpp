@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/geometry/region.hpp"
 #include "core/membrane/geometry.hpp"
 #include "core/surface/surfaces.hpp"
 #include "scene/scene.hpp"
@@ -28,10 +29,12 @@ struct CellMeasures {
   std::array<double, 3> short_axis{};  ///< unit vector, its first component that is not 0 positive
 };
 
-CellMeasures measure(const core::Membranes& membranes, int cell, const core::Domain<2>& domain);
-/// `marker`: the node that is followed, counted from the cell's first. `tube_radius`: 0 without a tube.
-CellMeasures measure(const core::Surfaces& surfaces, int cell, const core::Domain<3>& domain, int marker,
-                     double tube_radius);
+/// `region`: of the fluid (scene::fluid_region); null: planes alone close the domain. `marker`: the node that is
+/// followed, counted from the cell's first; of an outline the first one is.
+CellMeasures measure(const core::Membranes& membranes, int cell, const core::Domain<2>& domain,
+                     const core::Region<2>* region = nullptr, int marker = 0);
+CellMeasures measure(const core::Surfaces& surfaces, int cell, const core::Domain<3>& domain,
+                     const core::Region<3>* region, int marker);
 
 /// Area that an outline encloses.
 double enclosed(const core::Membranes& membranes, int cell);

@@ -110,7 +110,9 @@ constexpr Observable cell_columns[] = {
      .chart = "Smallest gap to another cell"},
     {.name = "wall_gap",
      .unit = "m",
-     .doc = "smallest distance of the outline to a wall; `nan` without walls",
+     .doc =
+         "smallest distance of the membrane's nodes to a wall, whatever its shape; negative beyond it, `nan` without "
+         "walls",
      .value = cell<&CellSnapshot::wall_gap>,
      .chart = "Smallest gap to a wall"},
     {.name = "aggregate",
@@ -226,7 +228,8 @@ constexpr Observable series_columns[] = {
      .unit = "",
      .doc = "where the walls move: mean wall shear stress over viscosity times shear rate (`nan` before they have "
             "acted); where a force along x drives the flow between walls at rest: flow rate of the suspending "
-            "fluid alone, G H^3/(12 mu), over `flow_rate_m2_per_s`; else, and where they oscillate, `nan`. Both are "
+            "fluid alone, G H^3/(12 mu), over `flow_rate_m2_per_s`; else, between walls of any shape, and where they "
+            "oscillate, `nan`. Both are "
             "values of the instant: those of a suspension want a steady state and a mean",
      .value = output<&Snapshot::relative_viscosity>,
      .chart = "Relative viscosity",
@@ -238,8 +241,9 @@ constexpr Observable series_columns[] = {
      .value = output<&Snapshot::shear_rate>},
     {.name = "wall_stress_lower",
      .unit = "Pa",
-     .doc = "mean shear stress on the lower wall (of a tube: on all of it) along +x in the last step, in phase "
-            "with `shear_rate`; `nan` without walls and before they act",
+     .doc = "mean shear stress on the lower wall along +x in the last step, in phase with `shear_rate`; of a tube and "
+            "of walls of any shape: force along x on all of it, pressure included, over its area. `nan` without walls "
+            "and before they act",
      .value = output<&Snapshot::wall_stress_lower>,
      .has_means = true},
     {.name = "wall_stress_upper",
@@ -297,7 +301,8 @@ constexpr Observable series_columns[] = {
      .doc = "mean over the lattice's columns of the distance from the lower wall to the nearest membrane; half the "
             "height counts in a column where none is nearer, so that few cells give a large value. In a tube, of "
             "the half of its wall below the axis, along rays from the axis a spacing apart at the wall, where the "
-            "radius counts. `nan` without walls or cells",
+            "radius counts. Of walls of any shape, over all of their surface, the distance to the nearest node of a "
+            "membrane, where half the local width counts; lower and upper are the same. `nan` without walls or cells",
      .value = output<&Snapshot::cell_free_layer_lower>,
      .chart = "Cell-free layer",
      .line = "lower wall",
@@ -313,6 +318,15 @@ constexpr Observable series_columns[] = {
      .unit = "",
      .doc = "share of these columns or rays without a cell: above 0.05 the layers are no result; `nan` as they are",
      .value = output<&Snapshot::cell_free_layer_empty>,
+     .has_means = true},
+    {.name = "discharge_hematocrit",
+     .unit = "",
+     .doc = "of a driven channel, tube or vessel: flux of what the cells enclose along x over the flow rate, both as "
+            "means over the length at this instant: sum over the cells of volume times mean velocity, over the "
+            "integral of the velocity over all fluid, cells included; in two dimensions of areas. `nan` elsewhere, "
+            "without cells and before these have moved",
+     .value = output<&Snapshot::discharge_hematocrit>,
+     .chart = "Discharge hematocrit",
      .has_means = true},
     {.name = "aggregate_size_number_mean",
      .unit = "",

@@ -62,9 +62,7 @@ EnergySnapshot observe_energy(core::AnySolver<D>& solver, const core::Energetics
   energy.kinetic = fluid.kinetic * joule;
   energy.viscous_dissipation = fluid.dissipation * watt;
   energy.total = energy.kinetic;
-  if (!setting.domain.periodic[1]) {
-    energy.wall_power = 0;
-  }
+  if (!setting.domain.periodic[1] || setting.solid) energy.wall_power = 0;  // solid nodes are at rest
   const core::WallVelocity& walls = solver.fluid().last_walls();
   if (setting.solid && (walls.lower != 0 || walls.upper != 0)) {
     const core::WallForces<D> forces = solver.wall_forces();

@@ -138,16 +138,13 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
   const auto& cells = around.cells();
   const core::Ranks<D> ranks = around.ranks();
   const core::Domain<D> domain = scene::lattice_domain<D>(*scene_);
+  const core::RegionPointer<D> region = scene::fluid_region<D>(*scene_);
   around.show(touching);
   std::vector<CellContact> contacts = core::to_first(ranks, find_touching_cells(cells, domain, touching));
   const std::vector<double> gaps = smallest_gaps(around, domain);
   std::vector<CellMeasures> measures;
   for (const int c : cells.own_cells()) {
-    if constexpr (D == 2) {
-      measures.push_back(measure(cells, c, domain));
-    } else {
-      measures.push_back(measure(cells, c, domain, marker_[c], scene_->domain.tube_radius.value_or(0) / length));
-    }
+    measures.push_back(measure(cells, c, domain, region.get(), D == 2 ? 0 : marker_[c]));
     measures.back().gap = gaps[c];
   }
   measures = core::to_first(ranks, std::move(measures));
@@ -207,6 +204,27 @@ void Observer::follow_stretch(const core::StretchRange& stretch, CellSnapshot& s
 }
 
 template <int D>
+void Observer::observe_layers(const core::Cells<D>& cells, const core::Ranks<D>& ranks, double length,
+                              Snapshot& snapshot) {
+  const core::Domain<D> domain = scene::lattice_domain<D>(*scene_);
+  const CellFreeLayer layer = [&] {
+    if (scene_->domain.has_shapes()) {
+      auto& points = std::get<std::vector<WallPoint<D>>>(wall_points_);
+      if (points.empty()) points = wall_points(scene::fluid_region<D>(*scene_), domain);
+      return cell_free_layer_at(points, cells, domain, ranks);
+    }
+    if constexpr (D == 3) {
+      if (const std::optional<double> radius = scene_->domain.tube_radius)
+        return cell_free_layer_in_tube(cells, domain, *radius / length, ranks);
+    }
+    return cell_free_layer(cells, domain, ranks);
+  }();
+  snapshot.cell_free_layer_lower = layer.lower * length;
+  snapshot.cell_free_layer_upper = layer.upper * length;
+  snapshot.cell_free_layer_empty = layer.empty;
+}
+
+template <int D>
 Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures<D>& measured,
                            const scene::StageSetting& setting, bool with_fields) {
   const auto& cells = solver.cells();
@@ -220,11 +238,12 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
   snapshot.relative_viscosity = snapshot.flow_rate = snapshot.mean_velocity = snapshot.area_leakage_max = std::nan("");
   snapshot.cell_free_layer_lower = snapshot.cell_free_layer_upper = snapshot.cell_free_layer_empty = std::nan("");
   snapshot.shear_rate = snapshot.wall_stress_lower = snapshot.wall_stress_upper = std::nan("");
-  snapshot.pressure_gradient = std::nan("");
+  snapshot.pressure_gradient = snapshot.discharge_hematocrit = std::nan("");
   snapshot.aggregate_size_number_mean = snapshot.aggregate_size_weight_mean = std::nan("");
   const core::AnyFluid<D>& fluid = solver.fluid();
   const bool oscillates = setting.oscillation.any();
-  if (!scene_->domain.periodic[1]) {
+  const bool has_walls = !scene_->domain.periodic[1] || scene_->domain.has_shapes();
+  if (has_walls) {
     const auto stress = solver.wall_stress();
     snapshot.wall_stress_lower = units.to_si(stress.lower, units::dimension::pressure);
     snapshot.wall_stress_upper = units.to_si(stress.upper, units::dimension::pressure);
@@ -237,7 +256,7 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
   }
   if (is_driven_channel(setting, *scene_)) {
     const double rate = flow_rate(fluid, measured.row_velocities);
-    if (!oscillates)
+    if (!oscillates && !scene_->domain.has_shapes())
       snapshot.relative_viscosity = apparent_viscosity(rate / scene::duct_share(scene_->domain),
                                                        fluid.setting().body_force[0], setting, scene_->domain.nodes[1]);
     snapshot.flow_rate = units.to_si(rate, units::dimension::velocity) * units.length;
@@ -245,6 +264,11 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
     snapshot.mean_velocity = snapshot.flow_rate;  // times what the flow rate is a mean over
     for (int axis = 0; axis < box.dimension(); ++axis) snapshot.mean_velocity *= axis == 1 ? 1 : box.size[axis];
     snapshot.mean_velocity /= box.content();
+    // Over one flow rate, along the length and of the whole depth.
+    double flow = rate * box.nodes[0];
+    for (int axis = 2; axis < D; ++axis) flow *= box.nodes[axis];
+    const double carried = cells.cells.empty() ? 0 : cell_flux(cells, solver.ranks());
+    if (carried != 0 && flow != 0) snapshot.discharge_hematocrit = carried / flow;
   }
   if (setting.stage->pressure_gradient != scene::Vector() || setting.stage->mean_velocity ||
       setting.oscillation.body_force_x != 0) {
@@ -253,19 +277,7 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
   }
   if (!cells.cells.empty()) {
     const core::Ranks<D>& ranks = solver.ranks();
-    if (!scene_->domain.periodic[1]) {
-      const core::Domain<D> domain = scene::lattice_domain<D>(*scene_);
-      const CellFreeLayer layer = [&] {
-        if constexpr (D == 3) {
-          if (const std::optional<double> radius = scene_->domain.tube_radius)
-            return cell_free_layer_in_tube(cells, domain, *radius / units.length, ranks);
-        }
-        return cell_free_layer(cells, domain, ranks);
-      }();
-      snapshot.cell_free_layer_lower = layer.lower * units.length;
-      snapshot.cell_free_layer_upper = layer.upper * units.length;
-      snapshot.cell_free_layer_empty = layer.empty;
-    }
+    if (has_walls) observe_layers(cells, ranks, units.length, snapshot);
     // In layers a cell's share in the stress is not a matter of its membrane alone.
     snapshot.particle_stress =
         scene_->fluid.layers.empty()

@@ -3,9 +3,11 @@
 
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "aggregates.hpp"
+#include "cell_free_layer.hpp"
 #include "cell_measures.hpp"
 #include "core/membrane/geometry.hpp"
 #include "core/solver/any_solver.hpp"
@@ -87,10 +89,14 @@ class Observer {
   template <int D>
   void observe_cells(core::Surroundings<D>& around, const units::LatticeUnits& units, Snapshot& snapshot);
   void follow_angles(const CellMeasures& measures, CellSnapshot& snapshot);
+  template <int D>
+  void observe_layers(const core::Cells<D>& cells, const core::Ranks<D>& ranks, double length, Snapshot& snapshot);
   void follow_stretch(const core::StretchRange& stretch, CellSnapshot& snapshot);
 
   const scene::Scene* scene_;
   core::Domain<2> domain_;
+  /// Of walls of any shape, made when first asked for.
+  std::tuple<std::vector<WallPoint<2>>, std::vector<WallPoint<3>>> wall_points_;
   std::vector<double> initial_area_;                 ///< or volumes
   std::vector<int> marker_;                          ///< of each surface: the node that tells its tank treading
   std::vector<double> angle_, tank_treading_angle_;  ///< last values, continuous

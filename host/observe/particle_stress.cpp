@@ -19,6 +19,12 @@ double stress_of_forces(const core::CellNodes& nodes, int cell, const scene::Sce
   return stress;
 }
 
+/// Of the fluid, in volumes or areas of a node.
+double fluid_content(const scene::Domain& domain) {
+  if (!domain.tube_radius && !domain.has_shapes()) return domain.node_count();
+  return domain.content() / std::pow(domain.size.x() / domain.nodes[0], domain.dimension());
+}
+
 }  // namespace
 
 double particle_stress(const core::Membranes& m, const scene::Scene& scene, double viscosity,
@@ -36,7 +42,7 @@ double particle_stress(const core::Membranes& m, const scene::Scene& scene, doub
     }
     return stress;
   });
-  return all / (static_cast<double>(scene.domain.nodes[0]) * scene.domain.nodes[1]);
+  return all / fluid_content(scene.domain);
 }
 
 double particle_stress(const core::Surfaces& s, const scene::Scene& scene, double viscosity,
@@ -58,8 +64,7 @@ double particle_stress(const core::Surfaces& s, const scene::Scene& scene, doubl
     }
     return stress;
   });
-  if (!scene.domain.tube_radius) return all / scene.domain.node_count();
-  return all / (scene.domain.content() / std::pow(scene.domain.size.x() / scene.domain.nodes[0], 3));
+  return all / fluid_content(scene.domain);
 }
 
 }  // namespace rouleau::observe

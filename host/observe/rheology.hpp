@@ -6,6 +6,7 @@
 
 #include "core/fluid/any_fluid.hpp"
 #include "core/membrane/membranes.hpp"
+#include "core/surface/surfaces.hpp"
 #include "scene/stage_scales.hpp"
 #include "snapshot.hpp"
 
@@ -24,6 +25,11 @@ template <int D>
 double flow_rate(const core::AnyFluid<D>& fluid) {
   return flow_rate(fluid, fluid.row_velocities());
 }
+
+/// Integral of the velocity along x over what the cells enclose, lattice units: of their membranes' velocities, for what
+/// they enclose keeps its volume. All ranks together.
+double cell_flux(const core::Membranes& membranes, const core::Ranks<2>& ranks = {});
+double cell_flux(const core::Surfaces& surfaces, const core::Ranks<3>& ranks = {});
 
 /// Flow rate of the suspending fluid alone, G H^3 / (12 mu) of plane Poiseuille flow, over `flow_rate` (lattice): the
 /// relative apparent viscosity of a driven suspension. Not a number where nothing flows but rounding.

@@ -124,9 +124,10 @@ struct Snapshot {
   double relative_viscosity = 0;  ///< wall shear stress / (viscosity x shear rate), or of the flow rate; NaN: neither
   double shear_rate = 0;          ///< 1/s, of the walls over the last step; NaN where they do not move
   double wall_stress_lower = 0, wall_stress_upper = 0;  ///< Pa, on each wall along x; NaN without
-  double pressure_gradient = 0;  ///< Pa/m, that drives the fluid beside fluid.body_force; NaN where none does
-  double flow_rate = 0;          ///< m2/s, per depth, of a driven channel; NaN elsewhere
-  double mean_velocity = 0;      ///< m/s, of a driven channel: the flow rate over the cross-section; NaN elsewhere
+  double pressure_gradient = 0;     ///< Pa/m, that drives the fluid beside fluid.body_force; NaN where none does
+  double flow_rate = 0;             ///< m2/s, per depth, of a driven channel; NaN elsewhere
+  double mean_velocity = 0;         ///< m/s, of a driven channel: the flow rate over the cross-section; NaN elsewhere
+  double discharge_hematocrit = 0;  ///< flux of cells over the flow rate; NaN where there is none, or no cells
   double cell_free_layer_lower = 0, cell_free_layer_upper = 0;  ///< m; NaN without walls or cells
   double cell_free_layer_empty = 0;  ///< share of the columns in which there is no cell; NaN as the layers
   double particle_stress = 0;        ///< xy, Pa: membranes and viscosity contrast, per area of the domain

@@ -10,6 +10,7 @@
 #include "constants.hpp"
 #include "core/contact/cell_grid.hpp"
 #include "core/contact/triangle_contacts.hpp"
+#include "core/contact/wall_gap.hpp"
 #include "core/membrane/geometry.hpp"
 #include "placed_cells.hpp"
 #include "scene/driving_flow.hpp"
@@ -211,7 +212,7 @@ namespace {
 struct StartGaps {
   double cells = std::numeric_limits<double>::infinity();  ///< between two cells, images included
   double walls = cells;                                    ///< to plane walls
-  double tube = cells;                                     ///< to the wall of a tube, however far
+  double region = cells;                                   ///< to the wall of a tube, or of any shape, however far
 };
 constexpr double gap_reach = 2;  // spacings
 
@@ -242,14 +243,11 @@ void measure(const scene::Scene& scene, StartGaps& gaps) {
   const core::Cells<D> cells = make_known_cells<D>(scene, [](int) { return true; });
   const core::Domain<D> domain = scene::lattice_domain<D>(scene);
   gaps.cells = std::min(gaps.cells, gap_between(cells, domain));
-  if constexpr (D == 3) {
-    if (scene.domain.tube_radius) {
-      const double radius = *scene.domain.tube_radius / scene::lattice_spacing(scene);
-      for (int cell = 0; cell < cells.cell_count(); ++cell)
-        gaps.tube = std::min(gaps.tube, radius - core::farthest_from_axis(cells, cell, domain));
-      return;
-    }
+  if (const core::RegionPointer<D> region = scene::fluid_region<D>(scene)) {
+    for (const core::CellRange& cell : cells.cells)
+      gaps.region = std::min(gaps.region, core::nearest_to_border(cells, cell, *region).distance);
   }
+  if (scene.domain.tube_radius) return;
   const auto& places = cells.position;
   for (int k = 1; k < D; ++k) {
     if (!domain.walled(k)) continue;
@@ -260,7 +258,7 @@ void measure(const scene::Scene& scene, StartGaps& gaps) {
 }
 
 /// Of cells that are nearer than two spacings. Cells at random, which need not have been placed, count with the gap
-/// that they keep, in a tube always, else where it is below the least one. Of more than 20 000 others gaps are not
+/// that they keep, in a tube and between walls of any shape always, else where it is below the least one. Of more than 20 000 others gaps are not
 /// looked for: the file that has them is taken as it is.
 StartGaps start_gaps(const scene::Scene& scene) {
   constexpr std::size_t most = 20'000;
@@ -270,7 +268,7 @@ StartGaps start_gaps(const scene::Scene& scene) {
     const auto first = placed.cells.begin() + packing->first;
     placed.cells.erase(first, first + packing->count);
     const double gap = packing->gap / scene::lattice_spacing(scene);
-    if (scene.domain.tube_radius) gaps.tube = std::min(gaps.tube, gap);
+    if (scene.domain.tube_radius || scene.domain.has_shapes()) gaps.region = std::min(gaps.region, gap);
     if (!(gap < least_gap_at_start)) continue;
     gaps.cells = std::min(gaps.cells, gap);
     if (scene::has_walls(scene.domain) && !scene.domain.tube_radius) gaps.walls = std::min(gaps.walls, gap);
@@ -291,10 +289,13 @@ void add_gaps(const LimitedStage& of, LimitList& limits) {
       "what acts between them throws them apart or never parts them");
   limits.above("gap between cells, as placed, and a wall in lattice spacings", gaps.walls, least_gap_at_start,
                "move cells away from the wall, or raise the resolution: nearer than that the lattice holds them to it");
-  limits.above("gap between cells, as placed, and the wall of the tube in lattice spacings", gaps.tube,
-               least_gap_to_tube,
-               "raise the resolution, or move cells towards the axis: nearer than that they move too fast, on the wall "
-               "by a third of a spacing times the shear rate",
+  const bool tube = of.scene.domain.tube_radius.has_value();
+  limits.above(std::string("gap between cells, as placed, and ") +
+                   (tube ? "the wall of the tube" : "a wall of any shape") + " in lattice spacings",
+               gaps.region, least_gap_to_tube,
+               std::string("raise the resolution, or move cells ") + (tube ? "towards the axis" : "away from it") +
+                   ": nearer than that they move too fast, on the wall "
+                   "by a third of a spacing times the shear rate",
                RemediedBy::resolution);
 }
 

@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "core/contact/cell_grid.hpp"
 #include "core/contact/crossing.hpp"
+#include "core/contact/wall_gap.hpp"
 #include "core/membrane/geometry.hpp"
 #include "estimate.hpp"
 #include "scene/cell_table.hpp"
@@ -18,6 +19,7 @@
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
 #include "shape/surface.hpp"
+#include "shape/vessel.hpp"
 
 namespace rouleau::plan {
 namespace {
@@ -80,8 +82,13 @@ core::Cells<D> all_cells(const scene::Scene& scene, double spacing) {
   return cells;
 }
 
-/// There are tubes in three dimensions alone.
-double farthest_from_axis(const core::Membranes&, int, const core::Domain<2>&) { return 0; }
+/// Whether a place lies in a cell.
+bool encloses(const core::Membranes& membranes, int cell, const core::Vec<2>& place) {
+  return core::depth_inside(membranes, membranes.cells[cell], place) > 0;
+}
+bool encloses(const core::Surfaces& surfaces, int cell, const core::Vec<3>& place) {
+  return core::encloses(surfaces.type_of(cell).mesh, surfaces.nodes(cell), place);
+}
 
 /// Refuses cells that stick through walls, are longer than a period, or cross each other: outlines themselves, too, and
 /// of surfaces those of which one holds a node of the other.
@@ -96,7 +103,14 @@ class PlacementChecker {
         spacing_(spacing),
         numbers_(numbers),
         domain_(scene::lattice_domain<D>(scene)),
-        boxes_(core::boxes_of<D>(cells)) {}
+        region_(scene::fluid_region<D>(scene)),
+        boxes_(core::boxes_of<D>(cells)) {
+    if (!scene.domain.has_shapes()) return;
+    for (const auto& piece : shape::wall_pieces<D>(scene.domain)) {
+      core::Vec<D>& place = pieces_.emplace_back(piece.data());
+      place = place.array() / spacing - 0.5;
+    }
+  }
 
   void check() const {
     for (int c = 0; c < cells_.cell_count(); ++c) check_fits(c);
@@ -132,11 +146,36 @@ class PlacementChecker {
                        scene::axis_names[k] + " by " + micrometres(below < 0 ? above : below) +
                        "; move it away from the wall.");
     }
-    if (!scene_.domain.tube_radius) return;
-    const double beyond = farthest_from_axis(cells_, cell, domain_) - *scene_.domain.tube_radius / spacing_;
-    if (beyond < 0) return;
-    refuse(cell, " sticks through the wall of the tube by " + micrometres(beyond) +
-                     "; move it towards the axis, or make the tube wider.");
+    if (region_) check_within_region(cell);
+  }
+
+  void check_within_region(int cell) const {
+    const core::NearestToBorder<D> nearest = core::nearest_to_border(cells_, cells_.cells[cell], *region_);
+    if (!(nearest.distance > 0) && scene_.domain.tube_radius) {
+      refuse(cell, " sticks through the wall of the tube by " + micrometres(-nearest.distance) +
+                       "; move it towards the axis, or make the tube wider.");
+    }
+    if (!(nearest.distance > 0)) {
+      refuse(cell, " sticks through a wall by " + micrometres(-nearest.distance) + " at " + name(nearest.node) +
+                       "; move it away from the wall.");
+    }
+    // None of its nodes needs to be near a wall that it lies around.
+    for (const core::Vec<D>& piece : pieces_) {
+      core::Vec<D> place = piece;
+      for (int k = 0; k < D; ++k) {
+        if (!domain_.periodic[k]) continue;
+        const double away = 0.5 * (boxes_[cell].least[k] + boxes_[cell].most[k]) - place[k];
+        place[k] += domain_.period(k) * std::round(away / domain_.period(k));
+      }
+      if (encloses(cells_, cell, place))
+        refuse(cell, " lies around a piece of wall at " + name(piece) + "; move it away from the wall.");
+    }
+  }
+  /// A place on the lattice, as scenes write it.
+  [[nodiscard]] std::string name(const core::Vec<D>& place) const {
+    std::string text;
+    for (int k = 0; k < D; ++k) text += (k > 0 ? ", " : "") + number((place[k] + 0.5) * spacing_ * 1e6, 4);
+    return "(" + text + ") um";
   }
 
   void check_apart(const core::Membranes& membranes) const {
@@ -206,6 +245,8 @@ class PlacementChecker {
   double spacing_;
   std::span<const int> numbers_;
   core::Domain<D> domain_;
+  core::RegionPointer<D> region_;     ///< of a tube, or between walls of any shape
+  std::vector<core::Vec<D>> pieces_;  ///< a place in each piece of these
   std::vector<core::BoundingBox<D>> boxes_;
 };
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "constants.hpp"
+#include "core/geometry/border_of_region.hpp"
 
 namespace rouleau::plan {
 
@@ -50,6 +51,9 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
       const double radius = *scene.domain.tube_radius / spacing;
       setup.wall_area = 2 * std::numbers::pi * radius * setup.domain.size[0];
       setup.section_flow = [radius](double y, double z, double force) { return core::tube_flow(radius, force, y, z); };
+    } else {
+      const auto open = core::intersection<D>({setup.region, core::between_walls<D>(setup.domain)});
+      setup.wall_area = core::size_of<D>(core::border_of_region(*open, setup.domain));
     }
   }
   if (!plan.has_cells) return setup;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/contact/wall_contacts.hpp"
+#include "core/contact/wall_gap.hpp"
 #include "core/membrane/geometry.hpp"
 #include "observe/aggregates.hpp"
 #include "observe/energy.hpp"

@@ -55,15 +55,6 @@ StretchRange stretch_range(const Surfaces& surfaces, int cell) {
   return range;
 }
 
-double farthest_from_axis(const Surfaces& surfaces, int cell, const Domain<3>& domain) {
-  const double y = (domain.size[1] - 1) / 2.0, z = (domain.size[2] - 1) / 2.0;
-  const CellRange& range = surfaces.cells[cell];
-  double farthest = 0;
-  for (int i = range.first; i < range.end(); ++i)
-    farthest = std::max(farthest, std::hypot(surfaces.position[1][i] - y, surfaces.position[2][i] - z));
-  return farthest;
-}
-
 void add_cell(Surfaces& surfaces, int type, const Vec<3>& center, const Eigen::Matrix3d& rotation) {
   const RestSurface& rest = *surfaces.types.at(type);
   surfaces.cells.push_back({{.first = surfaces.node_count(), .count = rest.mesh.node_count()}, type});

@@ -57,9 +57,6 @@ using Cells = std::conditional_t<D == 2, Membranes, Surfaces>;
 /// Smallest and largest stretch of an edge: length over rest length.
 StretchRange stretch_range(const Surfaces& surfaces, int cell);
 
-/// How far the farthest node of a cell lies from the middle axis of the domain along x.
-double farthest_from_axis(const Surfaces& surfaces, int cell, const Domain<3>& domain);
-
 /// Adds a cell that rests, its shape's origin at `center`, turned by `rotation`.
 void add_cell(Surfaces& surfaces, int type, const Vec<3>& center,
               const Eigen::Matrix3d& rotation = Eigen::Matrix3d::Identity());

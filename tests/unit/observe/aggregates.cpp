@@ -9,6 +9,7 @@
 
 #include "core/contact/surface_crossing.hpp"
 #include "core/contact/triangle_contacts.hpp"
+#include "core/contact/wall_gap.hpp"
 #include "core/membrane/geometry.hpp"
 #include "core/surface/triangle_surface.hpp"
 #include "scene/output_schedule.hpp"
