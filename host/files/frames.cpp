@@ -24,7 +24,9 @@ bool equal_cells(const std::vector<int>& first) {
 }
 
 FrameWriter::FrameWriter(std::filesystem::path file, const scene::Scene& scene)
-    : file_(std::move(file)), title_(scene.title), domain_(scene.domain), storage_(scene.output.field_storage) {}
+    : file_(std::move(file)), title_(scene.title), domain_(scene.domain), storage_(scene.output.field_storage) {
+  walls_ = wall_border(scene);
+}
 
 void FrameWriter::write_header(hdf5::File& target) const {
   target.attribute("/", "format", "rouleau frames 1");
@@ -46,6 +48,7 @@ void FrameWriter::write_header(hdf5::File& target) const {
 void FrameWriter::open_segment() {
   open_.emplace(segment(saved_.segments.size() + 1), hdf5::File::Mode::create);
   write_header(*open_);
+  if (saved_.segments.empty()) write_walls(*open_, walls_);
   topology_here_ = false;
 }
 
@@ -224,6 +227,7 @@ hdf5::File open_frames(const std::filesystem::path& file) {
     try {
       const hdf5::File part(segment(number), hdf5::File::Mode::read);
       if (number == 1) all.copy_attributes(part, "/");
+      if (part.has("/walls")) all.link_to(segment(number), "/walls");
       for (const std::string& frame : part.names("/frames")) all.link_to(segment(number), "/frames/" + frame);
     } catch (const Error&) {
       if (number == 1) throw;

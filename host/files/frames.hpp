@@ -3,6 +3,7 @@
 //   /                      attributes format, title, size_m [2], nodes [2], periodic_y; where output.fields has a
 //                          region or a stride: fields_first_m [2], fields_spacing_m [2]; each [3] in three
 //                          dimensions, with periodic_z
+//   /walls                 corners, first; in three dimensions points, triangles: see WallBorder (walls.hpp)
 //   /frames/000000         attributes step, time_s, strain, stage, stage_name
 //     membranes/points     [n, 2] f64, m, not wrapped into the box; [n, 3] in three dimensions
 //     membranes/tension    [n] f64, N/m, of the segment from this node to the cell's next one; of a surface the mean of
@@ -32,6 +33,7 @@
 #include "hdf5/hdf5_file.hpp"
 #include "observe/snapshot.hpp"
 #include "scene/scene.hpp"
+#include "walls.hpp"
 
 namespace rouleau::files {
 
@@ -66,8 +68,7 @@ class FrameWriter {
   /// Adds a frame and hands it to the system, so that a crash later on mostly leaves a segment that can be read. Has
   /// the fields given (observe::Field), in which all ranks take part.
   void write(const observe::Snapshot& snapshot);
-  /// Closes the segment, synchronises it with the disk, and tells of all segments so far. The next frame begins
-  /// another.
+  /// Closes the segment, synchronises it with the disk, and tells of all so far. The next frame begins another.
   const FramesSaved& seal();
   /// Makes frames.h5, which is or leads to all segments. Nothing may be written after it.
   void close();
@@ -96,6 +97,7 @@ class FrameWriter {
   std::string title_;
   scene::Domain domain_;
   scene::FieldStorage storage_;
+  WallBorder walls_;
   FramesSaved saved_;               ///< every sealed segment
   std::optional<hdf5::File> open_;  ///< the segment that is being written
   std::vector<FrameRecord> frames_;
@@ -113,7 +115,7 @@ std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string&
 /// Throws Error(input_output).
 hdf5::File open_frames(const std::filesystem::path& file);
 
-/// Outlines read back from a run's frames. Throws Error(input_output).
+/// What pictures need, read back from a run's frames. Throws Error(input_output).
 class FrameReader {
  public:
   explicit FrameReader(const std::filesystem::path& file) : file_(open_frames(file)) {}
@@ -121,6 +123,7 @@ class FrameReader {
   [[nodiscard]] std::array<double, 3> size_in_space() const;  ///< m, in three dimensions
   [[nodiscard]] bool periodic_z() const { return file_.read_attribute("/", "periodic_z") != 0; }
   [[nodiscard]] bool periodic_y() const { return file_.read_attribute("/", "periodic_y") != 0; }
+  [[nodiscard]] WallBorder walls() const { return read_walls(file_); }
   [[nodiscard]] int frames() const { return file_.members("/frames"); }
   /// Of the membranes, as they were written; 0 where the frame has none.
   [[nodiscard]] std::size_t nodes(int frame) const;

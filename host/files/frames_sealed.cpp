@@ -103,6 +103,7 @@ void FrameWriter::link_segments() const {
     std::set<std::string> linked;
     for (std::size_t i = 0; i < saved_.segments.size(); ++i) {
       const hdf5::File part(segment(i + 1), hdf5::File::Mode::read);
+      if (part.has("/walls")) all.link_to(segment_name(i + 1), "/walls");
       for (const std::string group : {"/frames/", "/topology/"})
         for (const std::string& name : part.names(group))
           if (linked.insert(group + name).second) all.link_to(segment_name(i + 1), group + name);

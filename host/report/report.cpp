@@ -15,10 +15,10 @@ namespace {
 
 /// The page with what draws surfaces, where there are some.
 std::string report_page(const nlohmann::json& data) {
-  const bool in_space = data.contains("surfaces") && !data["surfaces"].is_null();
+  const bool has_surfaces = data.contains("surfaces") && !data["surfaces"].is_null();
   constexpr std::string_view mark = "@ROULEAU_SPACE@";
   std::string page(report_template);
-  page.replace(page.find(mark), mark.size(), in_space ? space_template : std::string_view{});
+  page.replace(page.find(mark), mark.size(), has_surfaces ? space_template : std::string_view{});
   return page_with(page, data);
 }
 

@@ -20,6 +20,7 @@
 #include "report_fields.hpp"
 #include "report_outlines.hpp"
 #include "report_surfaces.hpp"
+#include "report_walls.hpp"
 
 namespace rouleau::report {
 
@@ -299,14 +300,14 @@ Json report_data(const std::filesystem::path& directory) {
   data["charts"] = charts();
   data["series"] = series_data(series, selection);
   data["cells"] = count > 0 && outputs > 0 ? cell_data(*cells, count, outputs, selection) : Json(nullptr);
-  data["outlines"] = data["fields"] = data["surfaces"] = nullptr;
+  data["outlines"] = data["fields"] = data["surfaces"] = data["walls"] = nullptr;
   if (reader && outputs > 0) {
     try {
       const auto size = reader->size();
       data["domain"] = {{"size_um", {size[0] * micro, size[1] * micro}}, {"periodic_y", reader->periodic_y()}};
-      Json outlines = drawn ? outline_data(*reader, selection, stride) : Json();
+      Json outlines = drawn ? outline_data(*reader, selection, stride) : Json(), walls = wall_data(*reader);
       data["fields"] = field_data(directory / "frames.h5", selection);
-      data["outlines"] = std::move(outlines);  // both or none
+      data["outlines"] = std::move(outlines), data["walls"] = std::move(walls);  // all or none
       if (drawn) data["surfaces"] = surface_data(*reader, selection);
     } catch (const Error& error) {
       without_animation(error);

@@ -8,6 +8,13 @@
 
 namespace rouleau::report {
 
+double quantum_of(double diagonal) { return std::max(1e-9, diagonal / std::numeric_limits<std::int16_t>::max()); }
+
+void append_number(std::vector<unsigned char>& bytes, int number) {
+  for (int shift = 0; shift < 32; shift += 8)
+    bytes.push_back(static_cast<unsigned char>(static_cast<std::uint32_t>(number) >> shift & 0xff));
+}
+
 void append_place(std::vector<unsigned char>& bytes, double metres, double quantum) {
   const double limit = std::numeric_limits<std::int16_t>::max();
   if (!std::isfinite(metres)) metres = 0;  // the last output of a diverged run
@@ -77,7 +84,7 @@ Json outline_data(const files::FrameReader& reader, const std::vector<std::size_
               {"first", Json::array()},
               {"origin_um", Json::array()},
               {"nodes", Json::array()}};
-  const double quantum = std::max(1e-9, std::hypot(size[0], size[1]) / std::numeric_limits<std::int16_t>::max());
+  const double quantum = quantum_of(std::hypot(size[0], size[1]));
   result["quantum_um"] = quantum * micro;
   const double scale = tension_scale([&](int output) { return reader.outlines(output); }, selection);
   result["tension"] = {{"scale_N_per_m", scale}, {"values", Json::array()}};

@@ -20,8 +20,12 @@ inline constexpr double micro = 1e6;
 nlohmann::json outline_data(const files::FrameReader& reader, const std::vector<std::size_t>& selection,
                             std::size_t stride);
 
+/// What places within a domain of this diagonal are multiples of, m.
+double quantum_of(double diagonal);
 /// Adds a length as a little-endian int16 of quanta; 0 where it is no number.
 void append_place(std::vector<unsigned char>& bytes, double metres, double quantum);
+/// Adds a number as a little-endian int32.
+void append_number(std::vector<unsigned char>& bytes, int number);
 
 /// What all but one tension in a hundred stay below in magnitude, N/m: the ends of cells would hide the rest. outlines:
 /// those of an output.

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 
 #include "report_outlines.hpp"
 
@@ -45,14 +43,10 @@ Json surface_data(const files::FrameReader& reader, const std::vector<std::size_
   const observe::OutlineSnapshot begin = reader.surfaces(static_cast<int>(selection.front()));
   if (begin.triangles.empty()) return nullptr;
   const std::array<double, 3> size = reader.size_in_space();
-  const double quantum =
-      std::max(1e-9, std::hypot(size[0], size[1], size[2]) / std::numeric_limits<std::int16_t>::max());
+  const double quantum = quantum_of(std::hypot(size[0], size[1], size[2]));
   std::vector<unsigned char> triangles;
   for (const auto& corners : begin.triangles) {
-    for (const int node : corners) {
-      for (int shift = 0; shift < 32; shift += 8)
-        triangles.push_back(static_cast<unsigned char>(static_cast<std::uint32_t>(node) >> shift & 0xff));
-    }
+    for (const int node : corners) append_number(triangles, node);
   }
   Json result{{"size_um", {size[0] * micro, size[1] * micro, size[2] * micro}},
               {"periodic", {true, reader.periodic_y(), reader.periodic_z()}},

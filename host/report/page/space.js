@@ -2,9 +2,8 @@
 /// Surfaces of one run: nodes x, y, z in micrometres, not wrapped into the box, at an output that has them or between two.
 class Surfaces {
   constructor(surfaces) {
-    const triangles = new DataView(bytesOf(surfaces.triangles).buffer);
     Object.assign(this, {data: surfaces, first: surfaces.first, count: surfaces.first.length - 1, nodes: surfaces.first.at(-1), known: []});
-    this.triangles = Uint32Array.from({length: triangles.byteLength / 4}, (_, i) => triangles.getUint32(4 * i, true));
+    this.triangles = decodedTriangles(surfaces.triangles);
   }
   at(kept) {
     return this.known[kept] ??= decodedNodes(this, kept, 3);
@@ -40,16 +39,21 @@ class Surfaces {
     }
     return moved;
   }
-  /// Outer normals at the nodes, by the areas around them.
-  normals(places) {
-    const normals = new Float32Array(places.length), {triangles} = this;
-    for (let t = 0; t < triangles.length; t += 3) {
-      const [a, b, c] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]], u = [0, 1, 2].map(k => places[b + k] - places[a + k]), v = [0, 1, 2].map(k => places[c + k] - places[a + k]);
-      const cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-      for (const at of [a, b, c]) for (let k = 0; k < 3; ++k) normals[at + k] += cross[k];
-    }
-    return normals;
+}
+
+function decodedTriangles(text) {
+  const numbers = new DataView(bytesOf(text).buffer);
+  return Uint32Array.from({length: numbers.byteLength / 4}, (_, i) => numbers.getUint32(4 * i, true));
+}
+/// Outer normals at the nodes of triangles, by the areas around them.
+function normalsAt(places, triangles) {
+  const normals = new Float32Array(places.length);
+  for (let t = 0; t < triangles.length; t += 3) {
+    const [a, b, c] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]], u = [0, 1, 2].map(k => places[b + k] - places[a + k]), v = [0, 1, 2].map(k => places[c + k] - places[a + k]);
+    const cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    for (const at of [a, b, c]) for (let k = 0; k < 3; ++k) normals[at + k] += cross[k];
   }
+  return normals;
 }
 
 const rgbOf = (() => {
@@ -82,7 +86,7 @@ class SpaceView {
   }
   begin() {
     const {Renderer, Camera, Transform, Program, Mesh, Geometry} = ogl, nodes = this.surfaces.nodes, [x, y, z] = this.box.map(l => l / 2);
-    this.renderer = new Renderer({canvas: this.canvas, dpr: Math.min(2, window.devicePixelRatio || 1), alpha: true, antialias: true, premultipliedAlpha: false, preserveDrawingBuffer: true});
+    this.renderer = new Renderer({canvas: this.canvas, dpr: Math.min(2, window.devicePixelRatio || 1), alpha: true, antialias: true, premultipliedAlpha: true, preserveDrawingBuffer: true});
     const {gl} = this.renderer;
     if (!gl) throw new Error("no WebGL");
     gl.clearColor(0, 0, 0, 0);
@@ -97,6 +101,7 @@ class SpaceView {
         void main() { if (dot(plane.xyz, p) > plane.w) discard;
           float light = 0.45 + 0.6 * abs(dot(normalize(n), normalize(vec3(0.3, 0.5, 0.8)))); gl_FragColor = vec4(c * light * (gl_FrontFacing ? 1.0 : 0.55), 1.0); }`});
     new Mesh(gl, {geometry: this.geometry, program: this.program, frustumCulled: false}).setParent(this.scene);
+    if (this.data.walls?.surface) this.addWalls(this.data.walls.surface);
     const corners = Array.from({length: 8}, (_, i) => [i & 1 ? x : -x, i & 2 ? y : -y, i & 4 ? z : -z]), edges = [];
     for (let i = 0; i < 8; ++i) for (const bit of [1, 2, 4]) if (!(i & bit)) edges.push(...corners[i], ...corners[i | bit]);
     this.frameProgram = new Program(gl, {uniforms: {tone: {value: [0, 0, 0]}}, vertex: "attribute vec3 position; uniform mat4 modelViewMatrix, projectionMatrix; void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
@@ -105,13 +110,26 @@ class SpaceView {
     new Mesh(gl, {mode: gl.LINE_LOOP, geometry: this.rim, program: this.frameProgram, frustumCulled: false}).setParent(this.scene);
     new Mesh(gl, {mode: gl.LINES, geometry: new Geometry(gl, {position: {size: 3, data: new Float32Array(edges)}}), program: this.frameProgram, frustumCulled: false}).setParent(this.scene);
   }
+  /// Walls that are no planes: glass, denser where it is seen from the side.
+  addWalls({quantum_um: quantum, points, triangles}) {
+    const {Program, Mesh, Geometry} = ogl, {gl} = this.renderer, places = new DataView(bytesOf(points).buffer), index = decodedTriangles(triangles);
+    const position = Float32Array.from({length: places.byteLength / 2}, (_, i) => places.getInt16(2 * i, true) * quantum - this.box[i % 3] / 2);
+    this.wallProgram = new Program(gl, {cullFace: false, transparent: true, depthWrite: false, uniforms: {plane: this.program.uniforms.plane, tone: {value: [0, 0, 0]}},
+      vertex: `attribute vec3 position, normal; uniform mat4 modelViewMatrix, projectionMatrix; uniform mat3 normalMatrix; varying vec3 p, n, e;
+        void main() { vec4 seen = modelViewMatrix * vec4(position, 1.0); p = position; n = normalMatrix * normal; e = seen.xyz; gl_Position = projectionMatrix * seen; }`,
+      fragment: `precision highp float; uniform vec4 plane; uniform vec3 tone; varying vec3 p, n, e;
+        void main() { if (dot(plane.xyz, p) > plane.w) discard;
+          float along = abs(dot(normalize(n), normalize(e))), dense = 0.13 + 0.45 * pow(1.0 - along, 2.0); gl_FragColor = vec4(tone * dense, dense); }`});
+    this.wallProgram.setBlendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    new Mesh(gl, {geometry: new Geometry(gl, {position: {size: 3, data: position}, normal: {size: 3, data: normalsAt(position, index)}, index: {data: index}}), program: this.wallProgram, frustumCulled: false}).setParent(this.scene);
+  }
   draw() {
     const {canvas, geometry, surfaces, box} = this, width = canvas.clientWidth;
     if (!width || !this.renderer) return;
     const height = Math.round(Math.min(width * .76, 520)), between = this.timeline.between(this.run), colour = this.colours[this.view.colour] ?? this.colours.grey;
     if (this.width !== width) { this.renderer.setSize(width, height); canvas.style.width = "100%"; this.camera.perspective({aspect: width / height}); this.width = width; }
     const places = surfaces.wrapped(surfaces.between(between), box, this.periodic), position = geometry.attributes.position, tones = geometry.attributes.colour;
-    geometry.attributes.normal.data.set(surfaces.normals(places));
+    geometry.attributes.normal.data.set(normalsAt(places, surfaces.triangles));
     for (let i = 0; i < places.length; ++i) position.data[i] = places[i] - box[i % 3] / 2;
     const tension = colour?.tension && surfaces.tension(between);
     for (let cell = 0; cell < surfaces.count; ++cell) {
@@ -129,6 +147,7 @@ class SpaceView {
     this.camera.lookAt([0, 0, 0]);
     this.drawCut();
     this.frameProgram.uniforms.tone.value = rgbOf(css("--quiet") || css("--text"));
+    if (this.wallProgram) this.wallProgram.uniforms.tone.value = rgbOf(css("--quiet"));
     this.renderer.render({scene: this.scene, camera: this.camera});
   }
   /// The plane as the shader takes it, on the side of the eye, and its rim in the box.

@@ -1,0 +1,220 @@
+#include "walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "base/error.hpp"
+#include "core/geometry/zero_border.hpp"
+#include "scene/lattice.hpp"
+
+namespace rouleau::files {
+
+namespace {
+
+constexpr double most_samples = 300000;
+constexpr std::size_t most_triangles = 40000;
+constexpr double straight = 1e-3;  ///< samples: corners that lie nearer to the line past them are left out
+
+/// Samples of a region along the first axes of a domain, from end to end; along the rest in its middle.
+template <int Axes, int D>
+class Samples {
+ public:
+  /// One in about `step` spacings. `beyond`: another one behind each end, far outside of a wall.
+  Samples(const core::Domain<D>& domain, double step, bool beyond) : beyond_(beyond) {
+    for (int k = 0; k < D; ++k) origin_[k] = domain.size[k] / 2.0 - 0.5;
+    for (int k = 0; k < Axes; ++k) {
+      const int intervals = std::max(1, static_cast<int>(std::lround(domain.size[k] / step)));
+      spacing_[k] = static_cast<double>(domain.size[k]) / intervals;
+      size_[k] = intervals + 1 + (beyond ? 2 : 0);
+      origin_[k] = -0.5;
+    }
+  }
+  /// The walls' border, counted in samples from the domain's corner.
+  [[nodiscard]] core::Border<Axes> border(const core::Region<D>& region, double sign) const {
+    constexpr double far_outside = -1e6;  // so that the border passes through the sample within
+    std::size_t count = 1;
+    for (const int along : size_) count *= static_cast<std::size_t>(along);
+    std::vector<double> values(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      core::Vec<D> place = origin_;
+      bool within = true;
+      std::size_t rest = i;
+      for (int k = 0; k < Axes; ++k) {
+        const int at = static_cast<int>(rest % static_cast<std::size_t>(size_[k])) - (beyond_ ? 1 : 0);
+        rest /= static_cast<std::size_t>(size_[k]);
+        within = within && (!beyond_ || (at >= 0 && at < size_[k] - 2));
+        place[k] += at * spacing_[k];
+      }
+      values[i] = within ? sign * region.distance(place).value : far_outside;
+    }
+    core::Border<Axes> border = core::zero_border<Axes>(values, size_);
+    if (beyond_)
+      for (core::Vec<Axes>& corner : border.corners) corner -= core::Vec<Axes>::Constant(1);
+    return border;
+  }
+  /// In m of the domain, of a place counted in samples.
+  [[nodiscard]] std::array<double, Axes> metres(const core::Vec<Axes>& place, double lattice_spacing) const {
+    std::array<double, Axes> found;
+    for (int k = 0; k < Axes; ++k) found[k] = place[k] * spacing_[k] * lattice_spacing;
+    return found;
+  }
+
+ private:
+  bool beyond_;
+  core::Vec<D> origin_;
+  std::array<double, Axes> spacing_;
+  std::array<int, Axes> size_;
+};
+
+template <int Axes, int D>
+double step_for(const core::Domain<D>& domain) {
+  double count = 1;
+  for (int k = 0; k < Axes; ++k) count *= domain.size[k];
+  return std::max(1.0, std::pow(count / most_samples, 1.0 / Axes));
+}
+
+using Places = std::vector<core::Vec<2>>;
+
+/// Closed polygons of a closed border.
+std::vector<Places> polygons_of(const core::Border<2>& border) {
+  // Corners that all but coincide are one, and what joined them is left out.
+  constexpr double grain = 1.0 / 65536;
+  std::map<std::pair<double, double>, std::vector<std::pair<double, double>>> next;
+  const auto snapped = [&](int corner) {
+    const core::Vec<2>& place = border.corners[static_cast<std::size_t>(corner)];
+    return std::pair(std::round(place[0] / grain) * grain, std::round(place[1] / grain) * grain);
+  };
+  for (const auto& [from, to] : border.facets)
+    if (snapped(from) != snapped(to)) next[snapped(from)].push_back(snapped(to));
+  std::vector<Places> polygons;
+  while (!next.empty()) {  // as many segments begin at a corner as end there, so that every way comes back
+    Places& polygon = polygons.emplace_back();
+    auto at = next.begin();
+    do {
+      polygon.emplace_back(at->first.first, at->first.second);
+      const auto to = at->second.back();
+      at->second.pop_back();
+      if (at->second.empty()) next.erase(at);
+      at = next.find(to);
+    } while (at != next.end());
+  }
+  return polygons;
+}
+
+/// Without corners on straight parts; nothing of what has no area.
+Places simplified(const Places& polygon) {
+  Places kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const core::Vec<2>& before = kept.empty() ? polygon.back() : kept.back();
+    const core::Vec<2> past = polygon[(i + 1) % polygon.size()] - before, here = polygon[i] - before;
+    const bool on_the_way = here.dot(past) >= 0 && here.dot(past) <= past.squaredNorm();
+    if (!on_the_way || std::abs(here[0] * past[1] - here[1] * past[0]) > straight * past.norm())
+      kept.push_back(polygon[i]);
+  }
+  if (kept.size() < 3) kept.clear();
+  return kept;
+}
+
+template <int D>
+void add_polygons(const core::Region<D>& region, const core::Domain<D>& domain, double spacing, WallBorder& walls) {
+  const Samples<2, D> samples(domain, step_for<2>(domain), true);
+  for (const Places& polygon : polygons_of(samples.border(region, -1))) {
+    const Places corners = simplified(polygon);
+    if (corners.empty()) continue;
+    for (const core::Vec<2>& corner : corners) walls.corners.push_back(samples.metres(corner, spacing));
+    walls.first.push_back(static_cast<int>(walls.corners.size()));
+  }
+}
+
+void add_surface(const core::Region<2>&, const core::Domain<2>&, double, WallBorder&) {}
+void add_surface(const core::Region<3>& region, const core::Domain<3>& domain, double spacing, WallBorder& walls) {
+  for (double step = step_for<3>(domain);; step *= 1.25) {
+    const Samples<3, 3> samples(domain, step, false);
+    const core::Border<3> border = samples.border(region, 1);
+    if (border.facets.size() > most_triangles) continue;
+    for (const core::Vec<3>& corner : border.corners) walls.points.push_back(samples.metres(corner, spacing));
+    walls.triangles = border.facets;
+    return;
+  }
+}
+
+template <int D>
+void add_walls(const scene::Scene& scene, WallBorder& walls) {
+  const core::RegionPointer<D> region = scene::fluid_region<D>(scene);
+  if (!region) return;
+  const core::Domain<D> domain = scene::lattice_domain<D>(scene);
+  const double spacing = scene::lattice_spacing(scene);
+  add_polygons(*region, domain, spacing, walls);
+  add_surface(*region, domain, spacing, walls);
+}
+
+template <std::size_t N>
+void write_places(hdf5::File& file, const std::string& path, const std::vector<std::array<double, N>>& places) {
+  file.write(path, {places.size(), N}, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, places.data(), "m");
+}
+
+template <std::size_t N>
+std::vector<std::array<double, N>> read_places(const hdf5::File& file, const std::string& path) {
+  const std::vector<double> values = file.read(path);
+  std::vector<std::array<double, N>> places(values.size() / N);
+  for (std::size_t i = 0; i < N * places.size(); ++i) places[i / N][i % N] = values[i];
+  return places;
+}
+
+}  // namespace
+
+WallBorder wall_border(const scene::Scene& scene) {
+  WallBorder walls;
+  add_walls<2>(scene, walls);
+  add_walls<3>(scene, walls);
+  return walls;
+}
+
+void write_walls(hdf5::File& file, const WallBorder& walls) {
+  if (walls.empty()) return;
+  file.make_group("/walls");
+  if (!walls.corners.empty()) {
+    write_places(file, "/walls/corners", walls.corners);
+    file.write("/walls/first", walls.first, "1");
+  }
+  if (walls.triangles.empty()) return;
+  write_places(file, "/walls/points", walls.points);
+  file.write("/walls/triangles", {walls.triangles.size(), 3}, H5T_STD_I32LE, H5T_NATIVE_INT, walls.triangles.data(),
+             "1");
+}
+
+WallBorder read_walls(const hdf5::File& file) {
+  WallBorder walls;
+  const auto require = [&](bool fits, const char* dataset) {
+    if (!fits)
+      throw Error(Cause::input_output, Place{file.path().string()},
+                  std::string(dataset) + " does not fit the corners of /walls: the file is damaged; repeat the run");
+  };
+  if (file.has("/walls/corners")) {
+    walls.corners = read_places<2>(file, "/walls/corners");
+    walls.first.clear();
+    for (const double first : file.read("/walls/first")) {
+      require(first >= (walls.first.empty() ? 0 : walls.first.back()) && first <= double(walls.corners.size()),
+              "/walls/first");
+      walls.first.push_back(static_cast<int>(first));
+    }
+    require(!walls.first.empty(), "/walls/first");
+  }
+  if (file.has("/walls/triangles")) {
+    walls.points = read_places<3>(file, "/walls/points");
+    const std::vector<double> numbers = file.read("/walls/triangles");
+    for (std::size_t i = 0; i + 3 <= numbers.size(); i += 3) {
+      std::array<int, 3>& triangle = walls.triangles.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        require(numbers[i + k] >= 0 && numbers[i + k] < double(walls.points.size()), "/walls/triangles");
+        triangle[k] = static_cast<int>(numbers[i + k]);
+      }
+    }
+  }
+  return walls;
+}
+
+}  // namespace rouleau::files
