@@ -21,14 +21,15 @@ if TYPE_CHECKING:
     from .reading import mean_and_error as mean_and_error, open as open
     from .running import Plan as Plan, Progress as Progress, plan as plan, plugins as plugins, run as run
     from .simulation import FluidField as FluidField, Simulation as Simulation
+    from .shapes import mask as mask, outline as outline, polygons as polygons, vessel as vessel
     from .sweeping import sweep as sweep
 
 _HOME = {
     "Cell": "reading", "compare": "comparing", "Comparison": "comparing", "Error": "errors", "Fault": "errors",
-    "Field": "reading", "FluidField": "simulation", "Frame": "reading", "Mean": "reading", "mean_and_error": "reading",
-    "open": "reading", "Plan": "running", "plan": "running", "plugins": "running", "Potential": "potentials",
-    "potential": "potentials", "Progress": "running", "Run": "reading", "run": "running", "Simulation": "simulation",
-    "Stage": "reading", "sweep": "sweeping",
+    "Field": "reading", "FluidField": "simulation", "Frame": "reading", "mask": "shapes", "Mean": "reading", "mean_and_error": "reading",
+    "open": "reading", "outline": "shapes", "Plan": "running", "plan": "running", "plugins": "running", "polygons": "shapes",
+    "Potential": "potentials", "potential": "potentials", "Progress": "running", "Run": "reading", "run": "running",
+    "Simulation": "simulation", "Stage": "reading", "sweep": "sweeping", "vessel": "shapes",
 }
 
 __all__ = sorted(_HOME)

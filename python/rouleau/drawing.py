@@ -107,6 +107,18 @@ def images(cell: Cell, size_m: Sequence[float]) -> list[Any]:
             if (moved := home + [shift, 0.0])[:, 0].max() > 0 and moved[:, 0].min() < size_m[0]]
 
 
+def wall_patches(frame: Frame) -> list[Any]:
+    """Walls that are no planes: one patch, in um."""
+    import numpy
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+    if not len(frame.walls):
+        return []
+    closed = [1e6 * numpy.vstack([corners, corners[:1]]) for corners in frame.walls]
+    codes = [code for corners in closed for code in (Path.MOVETO, *[Path.LINETO] * (len(corners) - 2), Path.CLOSEPOLY)]
+    return [PathPatch(Path(numpy.vstack(closed), codes), facecolor="0.8", edgecolor="0.25", linewidth=0.8)]
+
+
 def plot_frame(frame: Frame, colour: str, field: str | None, axes: Any) -> Any:
     """Frame.plot"""
     import numpy
@@ -123,6 +135,8 @@ def plot_frame(frame: Frame, colour: str, field: str | None, axes: Any) -> Any:
         values = numpy.linalg.norm(shown.values, axis=2) if shown.values.ndim == 3 else shown.values
         mesh = axes.pcolormesh(1e6 * shown.x, 1e6 * shown.y, values, shading="nearest", cmap="Greys", rasterized=True)
         axes.figure.colorbar(mesh, label=f"{field} ({shown.unit})", **bar)
+    for patch in wall_patches(frame):
+        axes.add_patch(patch)
     largest = max((float(abs(cell.tension).max()) for cell in frame.cells), default=0.0)
     for cell in frame.cells:
         for outline in images(cell, frame.size_m):

@@ -154,6 +154,7 @@ class Frame:
     size_m: tuple[float, float]  #: of the box along x and y, m
     cells: list[Cell]  #: in the scene's order
     fields: dict[str, Field]  #: by name: velocity, density, viscosity, vorticity; empty where none were due
+    walls: Sequence[Floats] = ()  #: polygons [n, 2] in m around walls that are no planes, which lie at their left; in three dimensions around those that the plane across z through the middle cuts
 
     def field(self, name: str) -> Field:
         """One of the fields. Throws Error where it was not written."""
@@ -164,7 +165,7 @@ class Frame:
         return self.fields[name]
 
     def plot(self, colour: str = "cell", field: str | None = None, axes: Any = None) -> Any:
-        """Draws the outlines in um and returns matplotlib's Axes. `colour`: "cell", "aggregate" or "tension" (uN/m, with a
+        """Draws outlines and walls in um and returns matplotlib's Axes. `colour`: "cell", "aggregate" or "tension" (uN/m, with a
         bar). `field`: one that is drawn under them; of a velocity, its magnitude."""
         from . import drawing
         return drawing.plot_frame(self, colour, field, axes)
@@ -463,7 +464,17 @@ class Run(Outputs):
                 places = [begin[k] + spacing[k] * numpy.arange(values.shape[axes - 1 - k]) for k in range(axes)]
                 fields[name] = Field(values, _text(data.attrs["unit"]), *places)
         return Frame(int(row["step"]), float(row["time_s"]), float(row["strain"]), str(row["stage_name"]),
-                     (size[0], size[1]), cells, fields)
+                     (size[0], size[1]), cells, fields, self._walls())
+
+    def _walls(self) -> list[Floats]:
+        """Frame.walls, which the first file of frames has."""
+        with _opened(self._frame_files()[0]) as file:
+            group = _part(file, "walls")
+            first = None if group is None else _part(group, "first")
+            if group is None or first is None:
+                return []
+            corners = _part(group, "corners")[:]
+            return [corners[b:e] for b, e in zip(first[:-1], first[1:])]
 
 
 #: Share of columns without cells from which on a mean cell-free layer says nothing.
