@@ -41,6 +41,7 @@ name of a scene like demo. TEMPLATE is, in two dimensions,
   channel        red cells in a channel that a pressure gradient drives
   suspension     red cells packed at random between walls that shear them
   capsule        one circular capsule in shear flow
+  vessel         red cells in a vessel of any shape, which narrows
 and in three
   red-cell-3d    a red cell in shear flow
   doublet-3d     two red cells that stick together and are sheared

@@ -35,6 +35,7 @@ const std::array scene_templates{
     SceneTemplate{"red-cell-3d", red_cell_3d_scene},
     SceneTemplate{"doublet-3d", doublet_3d_scene},
     SceneTemplate{"tube-3d", tube_3d_scene},
+    SceneTemplate{"vessel", vessel_scene},
 };
 
 bool is_template(const std::string& name) {

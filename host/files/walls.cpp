@@ -70,10 +70,10 @@ class Samples {
 };
 
 template <int Axes, int D>
-double step_for(const core::Domain<D>& domain) {
+double step_for(const core::Domain<D>& domain, double least) {
   double count = 1;
   for (int k = 0; k < Axes; ++k) count *= domain.size[k];
-  return std::max(1.0, std::pow(count / most_samples, 1.0 / Axes));
+  return std::max(least, std::pow(count / most_samples, 1.0 / Axes));
 }
 
 using Places = std::vector<core::Vec<2>>;
@@ -120,7 +120,7 @@ Places simplified(const Places& polygon) {
 
 template <int D>
 void add_polygons(const core::Region<D>& region, const core::Domain<D>& domain, double spacing, WallBorder& walls) {
-  const Samples<2, D> samples(domain, step_for<2>(domain), true);
+  const Samples<2, D> samples(domain, step_for<2>(domain, 0.25), true);
   for (const Places& polygon : polygons_of(samples.border(region, -1))) {
     const Places corners = simplified(polygon);
     if (corners.empty()) continue;
@@ -131,7 +131,7 @@ void add_polygons(const core::Region<D>& region, const core::Domain<D>& domain, 
 
 void add_surface(const core::Region<2>&, const core::Domain<2>&, double, WallBorder&) {}
 void add_surface(const core::Region<3>& region, const core::Domain<3>& domain, double spacing, WallBorder& walls) {
-  for (double step = step_for<3>(domain);; step *= 1.25) {
+  for (double step = step_for<3>(domain, 1);; step *= 1.25) {
     const Samples<3, 3> samples(domain, step, false);
     const core::Border<3> border = samples.border(region, 1);
     if (border.facets.size() > most_triangles) continue;

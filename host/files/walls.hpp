@@ -23,8 +23,8 @@ struct WallBorder {
   [[nodiscard]] bool empty() const { return corners.empty() && triangles.empty(); }
 };
 
-/// Of a scene: straight between samples of the distance to its walls, a spacing apart or, where the lattice is large,
-/// farther. Empty where planes alone close the domain.
+/// Of a scene: straight between samples of the distance to its walls, of polygons a quarter of a spacing apart, of
+/// surfaces one; farther where the lattice is large. Empty where planes alone close the domain.
 WallBorder wall_border(const scene::Scene& scene);
 
 /// Adds them to a file as group /walls, unless they are empty. Throws Error(input_output).

@@ -101,10 +101,12 @@ def overview(outputs: Outputs, over: str | None) -> Any:
 
 
 def images(cell: Cell, size_m: Sequence[float]) -> list[Any]:
-    """Outlines [nodes, 2] of a cell in m, in the periodic box; on both sides where it reaches over the border."""
+    """Outlines [nodes, 2] of a cell in m, in the periodic box; on all sides where it reaches over the border. Between walls across
+    y none does."""
     home = cell.moved_into(size_m)
-    return [moved for shift in (-size_m[0], 0.0, size_m[0])
-            if (moved := home + [shift, 0.0])[:, 0].max() > 0 and moved[:, 0].min() < size_m[0]]
+    home[:, 1] -= size_m[1] * (home[:, 1].mean() // size_m[1])
+    shifts = [(a * size_m[0], b * size_m[1]) for a in (-1, 0, 1) for b in (-1, 0, 1)]
+    return [moved for shift in shifts if ((moved := home + shift).max(axis=0) > 0).all() and (moved.min(axis=0) < size_m[:2]).all()]
 
 
 def wall_patches(frame: Frame) -> list[Any]:

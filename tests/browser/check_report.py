@@ -543,6 +543,77 @@ class The_page_of_a_run_in_three_dimensions(PageCase):
         self.assertLess((self.directory / "report.html").stat().st_size, LARGEST_PAGE)
 
 
+class Walls_that_are_no_planes(PageCase):
+    """A post in the middle of a flow, in the plane; a tube, in space."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = Browser(draws_space=True)
+        scene = {"rouleau": 1, "title": "a post", "domain": {"size": ["32 um", "16 um"], "nodes": [64, 32], "obstacles": [{"sphere": {"center": ["16 um", "8 um"], "radius": "4 um"}}]},
+                 "fluid": {"density": "1 g/cm3", "viscosity": "1.2 cP"}, "numerics": {"density_factor": 100},
+                 "cell_types": {"c": {"shape": {"circle": {"radius": "2 um"}}, "segments": 24, "membrane": [{"model": "neo-hookean", "parameters": {"shear_modulus": "1e-5 N/m"}}]}},
+                 "cells": [{"type": "c", "at": ["4 um", "8 um"]}],
+                 "stages": [{"name": "flow", "duration": "1 ms", "pressure_gradient": "1e5 Pa/m"}],
+                 "output": {"cells": {"seconds": "0.2 ms"}, "fields": {"seconds": "0.5 ms", "quantities": ["velocity"]}}}
+        (folder / "post.json").write_text(json.dumps(scene))
+        rouleau("run", folder / "post.json", "--out", folder / "post", "--quiet")
+        rouleau("run", SOURCE / "tests/physics/scenes/capsule-in-tube.json", "--out", folder / "tube", "--quiet", "--set", "/stages/0/duration=\"0.5 ms\"",
+                "--set", '/domain/walls/tube/radius="2.5 um"')
+        rouleau("report", "--compare", folder / "post", folder / "post", "--out", folder / "posts.html")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.__exit__()
+
+    def colour(self, page, x, y):
+        """At a place in um of the first animation."""
+        return page.run(f"""(() => {{ const c = document.querySelector('canvas.view:not(.space)'), [lx, ly] = (data.runs?.[0] ?? data).domain.size_um, fine = c.width / c.clientWidth;
+            const scale = Math.min((c.clientWidth - 14) / lx, (c.clientHeight - 14) / ly), px = c.clientWidth / 2 + ({x} - lx / 2) * scale, py = c.clientHeight / 2 - ({y} - ly / 2) * scale;
+            return [...c.getContext('2d').getImageData(Math.round(fine * px), Math.round(fine * py), 1, 1).data].slice(0, 3); }})()""")
+
+    def tone(self, page, name):
+        return page.run(f"(() => {{ const c = document.createElement('canvas').getContext('2d'); c.fillStyle = css('{name}'); c.fillRect(0, 0, 1, 1); return [...c.getImageData(0, 0, 1, 1).data].slice(0, 3); }})()")
+
+    def test_are_filled_and_not_fluid_at_rest(self):
+        flow = "(v => { const s = document.querySelector('select[aria-label=Flow]'); s.value = v; s.dispatchEvent(new Event('change')); })"
+        for file in ("post/report.html", "posts.html"):
+            for scheme in ("light", "dark"):
+                with self.subTest(file=file, scheme=scheme):
+                    page = self.open(folder / file, scheme=scheme)
+                    page.run("timeline.seek(timeline.count - 1)")
+                    for quantity in ("", "speed"):
+                        page.run(f"{flow}('{quantity}')")
+                        page.run(Every_page_on_every_screen.DRAWN)
+                        for x, y in ((16, 8), (13.2, 8), (16, 11.2)):
+                            self.assertEqual(self.colour(page, x, y), self.tone(page, "--wall"))
+                    page.run("document.querySelector('input[type=checkbox]').click()")  # without tracers
+                    for x, y in ((16, 14), (24, 8), (16, 2)):
+                        self.assertNotEqual(self.colour(page, x, y), self.tone(page, "--wall"))
+                    self.assert_sound(page, SCREENS["desktop"]["width"])
+
+    def test_have_no_line_where_the_domain_ends(self):
+        page = self.open(folder / "tube" / "report.html")
+        meets = page.run("wallPolygons(data.walls, ...data.domain.size_um).map(p => p.corners.filter((_, i) => p.meets[i]).length)")
+        self.assertEqual(meets, [1, 1])  # of two rectangles, one side each
+        self.assertEqual(self.colour(page, 2, 0.2), self.tone(page, "--wall"))
+        self.assert_sound(page)
+
+    def test_are_glass_in_three_dimensions_that_a_cut_opens(self):
+        pixels = The_page_of_a_run_in_three_dimensions.PIXELS
+        for scheme in ("light", "dark"):
+            page = self.open(folder / "tube" / "report.html", scheme=scheme)
+            page.run("timeline.seek(0)")
+            page.run(Every_page_on_every_screen.DRAWN)
+            whole = page.run(pixels)
+            self.assertGreater(whole[0], 30000)  # the tube, where cell and box alone have far fewer
+            change = "(() => { const s = document.querySelector(%r); s.value = %r; s.dispatchEvent(new Event(%r)); })()"
+            page.run(change % ("select[aria-label='Cut']", "2", "change"))
+            self.assertNotEqual(page.run(pixels)[1], whole[1])
+            page.run(change % ("input[aria-label='Place of the cut']", "0", "input"))
+            self.assertLess(page.run(pixels)[0], 0.3 * whole[0])
+            self.assert_sound(page)
+
+
 class Two_runs(PageCase):
     def test_move_together_and_what_differs_stands_below(self):
         page = self.open(folder / "both.html")
