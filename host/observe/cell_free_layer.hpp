@@ -41,8 +41,8 @@ struct WallPoint {
 /// At most about ten thousand points, evenly over all walls across a domain and those of a region.
 template <int D>
 std::vector<WallPoint<D>> wall_points(const core::RegionPointer<D>& region, const core::Domain<D>& domain);
-/// At walls of any shape: mean over these points of the distance to the nearest node of a membrane; the half width counts
-/// where none is nearer. Lower and upper are the same.
+/// At walls of any shape: mean over these points of the distance to the nearest node of a membrane; the half width
+/// counts where none is nearer. Lower and upper are the same.
 template <int D>
 CellFreeLayer cell_free_layer_at(const std::vector<WallPoint<D>>& walls, const core::CellNodes& cells,
                                  const core::Domain<D>& domain, const core::Ranks<D>& ranks = {});

@@ -258,8 +258,8 @@ void measure(const scene::Scene& scene, StartGaps& gaps) {
 }
 
 /// Of cells that are nearer than two spacings. Cells at random, which need not have been placed, count with the gap
-/// that they keep, in a tube and between walls of any shape always, else where it is below the least one. Of more than 20 000 others gaps are not
-/// looked for: the file that has them is taken as it is.
+/// that they keep, in a tube and between walls of any shape always, else where it is below the least one. Of more than
+/// 20 000 others gaps are not looked for: the file that has them is taken as it is.
 StartGaps start_gaps(const scene::Scene& scene) {
   constexpr std::size_t most = 20'000;
   StartGaps gaps;

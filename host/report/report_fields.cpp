@@ -9,8 +9,8 @@
 #include "base/error.hpp"
 #include "files/field_nodes.hpp"
 #include "files/frames.hpp"
-#include "observe/vorticity.hpp"
 #include "report_outlines.hpp"
+#include "vorticity.hpp"
 
 namespace rouleau::report {
 
@@ -159,7 +159,7 @@ VelocityMeans add_velocity(const hdf5::File& file, const files::FieldNodes& grid
   const auto blocks = [&](std::size_t at_most) { return BlockMeans(grid.nx, grid.ny, at_most); };
   BlockMeans speed = blocks(most), vorticity = blocks(most), u = blocks(tracers.most()), v = blocks(tracers.most());
   FieldRows rows(file, grid, dataset);
-  const observe::VelocityGrid differences{grid.nx, grid.ny, {grid.spacing[0], grid.spacing[1]}, grid.periodic};
+  const VelocityGrid differences{grid.nx, grid.ny, {grid.spacing[0], grid.spacing[1]}, grid.periodic};
   const auto component = [&rows](std::size_t k) {
     return [&rows, k](std::size_t x, std::size_t y) { return rows.at(x, y, k); };
   };

@@ -39,10 +39,10 @@ double hematocrit_of(const scene::RandomPacking& packing, const scene::CellType&
 /// J. Stat. Phys. 60, 1990, with random moves in place of collisions). As many sweeps again make the cells forget the
 /// order in which they grew. Every configuration without overlap is then equally likely, as far as the sweeps reach.
 ///
-/// The same request gives the same centres and angles to the last bit on every machine, between walls of any shape up to
-/// the rounding of distances to these: the engine is the C++
-/// standard's 64-bit Mersenne twister, nothing is decided by a function of libm (rigid_body.hpp), angles are multiples
-/// of 2 pi / 2^20, and effort is counted in sweeps, not in seconds.
+/// The same request gives the same centres and angles to the last bit on every machine, between walls of any shape up
+/// to the rounding of distances to these: the engine is the C++ standard's 64-bit Mersenne twister, nothing is decided
+/// by a function of libm (rigid_body.hpp), angles are multiples of 2 pi / 2^20, and effort is counted in sweeps, not in
+/// seconds.
 std::optional<PackingShortfall> pack(const scene::Domain& domain, const std::vector<scene::CellType>& types,
                                      const std::vector<scene::RandomPacking>& packings,
                                      std::vector<scene::CellPlacement>& cells, const PackingWatch& watch = {});

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "mesh_file.hpp"
+#include "formats/mesh_file.hpp"
 
 namespace rouleau::shape {
 

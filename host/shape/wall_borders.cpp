@@ -10,9 +10,9 @@
 #include "core/geometry/faceted.hpp"
 #include "core/geometry/formulas.hpp"
 #include "core/geometry/zero_border.hpp"
-#include "image_file.hpp"
-#include "mesh_file.hpp"
-#include "mesh_weld.hpp"
+#include "formats/image_file.hpp"
+#include "formats/mesh_file.hpp"
+#include "formats/mesh_weld.hpp"
 #include "surface.hpp"
 
 namespace rouleau::shape {

@@ -7,8 +7,8 @@
 namespace rouleau::core {
 
 /// The border of a region in a domain, over one period along periodic axes, else from half a spacing before the first
-/// node to half a spacing behind the last: of second order in the spacing, edges rounded within one. Looks at the region
-/// near its border alone. Corners are those of blocks, which do not share them.
+/// node to half a spacing behind the last: of second order in the spacing, edges rounded within one. Looks at the
+/// region near its border alone. Corners are those of blocks, which do not share them.
 template <int D>
 Border<D> border_of_region(const Region<D>& region, const Domain<D>& domain);
 

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include "hdf5/hdf5_file.hpp"
-#include "observe/vorticity.hpp"
 #include "report/report.hpp"
 #include "report/report_data.hpp"
+#include "report/vorticity.hpp"
 #include "unit/run_fixture.hpp"
 
 namespace hdf5 = rouleau::hdf5;

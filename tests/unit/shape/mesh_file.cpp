@@ -1,5 +1,5 @@
 // Surfaces from files: the same in every format, and what is no surface is refused with its line.
-#include "shape/mesh_file.hpp"
+#include "shape/formats/mesh_file.hpp"
 
 #include <unistd.h>
 

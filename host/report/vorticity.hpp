@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-namespace rouleau::observe {
+namespace rouleau::report {
 
 /// Where velocities are known.
 struct VelocityGrid {
@@ -30,4 +30,4 @@ struct VelocityGrid {
   }
 };
 
-}  // namespace rouleau::observe
+}  // namespace rouleau::report
