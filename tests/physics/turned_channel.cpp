@@ -14,7 +14,7 @@ namespace {
 
 /// A channel along the diagonal of a periodic box, from end to end, as a long rectangle: the region comes again in its
 /// images.
-RegionPointer<2> diagonal_channel(const Domain<2>& domain, double half_height) {
+RegionPointer<2> diagonal_channel(const rouleau::core::Domain<2>& domain, double half_height) {
   const Vec<2> along(domain.size[0], domain.size[1]), across = Vec<2>(-along[1], along[0]).normalized() * half_height;
   const Vec<2> middle = (along - Vec<2>::Ones()) / 2;
   const Border<2> rectangle{
@@ -32,7 +32,7 @@ struct TurnedFlow {
 /// A tube along the diagonal of a periodic box's x and y, in the middle of its z.
 class DiagonalTube final : public Region<3> {
  public:
-  DiagonalTube(const Domain<3>& domain, double radius)
+  DiagonalTube(const rouleau::core::Domain<3>& domain, double radius)
       : middle_((Vec<3>(domain.size[0], domain.size[1], domain.size[2]) - Vec<3>::Ones()) / 2),
         along_(Vec<3>(domain.size[0], domain.size[1], 0).normalized()),
         radius_(radius) {}
@@ -49,7 +49,7 @@ class DiagonalTube final : public Region<3> {
 
 /// Flow along the diagonal of x and y that a force drives between walls `half_width` from the axis of a region.
 template <class Set>
-TurnedFlow turned_flow(const Domain<Set::dimension>& domain, const RegionPointer<Set::dimension>& region,
+TurnedFlow turned_flow(const rouleau::core::Domain<Set::dimension>& domain, const RegionPointer<Set::dimension>& region,
                        double half_width) {
   constexpr int D = Set::dimension;
   const double tau = 2, viscosity = (tau - 0.5) / 3, force = 1e-6;
@@ -85,11 +85,11 @@ TurnedFlow turned_flow(const Domain<Set::dimension>& domain, const RegionPointer
 }
 
 TurnedFlow channel_flow(int nx, int ny, double half_height) {
-  const Domain<2> domain({nx, ny}, {true, true});
+  const rouleau::core::Domain<2> domain({nx, ny}, {true, true});
   return turned_flow<D2Q9>(domain, diagonal_channel(domain, half_height), half_height);
 }
 TurnedFlow tube_flow(int nx, int ny, double radius) {
-  const Domain<3> domain({nx, ny, static_cast<int>(std::ceil(2 * radius)) + 2}, {true, true, true});
+  const rouleau::core::Domain<3> domain({nx, ny, static_cast<int>(std::ceil(2 * radius)) + 2}, {true, true, true});
   return turned_flow<D3Q19>(domain, with_images<3>(std::make_shared<DiagonalTube>(domain, radius), domain), radius);
 }
 
