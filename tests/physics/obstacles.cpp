@@ -18,7 +18,7 @@ using namespace rouleau::test;
 namespace {
 
 using std::numbers::pi;
-constexpr double tau = 2, viscosity = (tau - 0.5) / 3, force = 1e-6;
+constexpr double relaxation = 2, kinematic = (relaxation - 0.5) / 3, push = 1e-6;
 
 RegionPointer<2> around_disc(const std::array<int, 2>& size, double radius) {
   return outside_of(ball_region<2>({(size[0] - 1) / 2.0, (size[1] - 1) / 2.0}, radius));
@@ -26,25 +26,26 @@ RegionPointer<2> around_disc(const std::array<int, 2>& size, double radius) {
 
 Fluid<double> fluid_in(const Domain<2>& domain, const RegionPointer<2>& region, const std::array<double, 2>& body_force,
                        const WallVelocity& walls = {}) {
-  FluidSetting<2> setting{.domain = domain, .relaxation_rate = 1 / tau, .walls = walls, .body_force = body_force};
+  FluidSetting<2> setting{
+      .domain = domain, .relaxation_rate = 1 / relaxation, .walls = walls, .body_force = body_force};
   setting.solid = std::make_shared<const SolidNodes<2>>(domain.size, region);
-  return {setting, make_collision("trt", {0.1875}, tau, false)};
+  return {setting, make_collision("trt", {0.1875}, relaxation, false)};
 }
 
-struct ArrayFlow {
+struct PastDiscs {
   double drag;  ///< per length, over mu U, U the mean over the square
   double mass;  ///< gained by each node, density 1
 };
 
-ArrayFlow array_flow(int side, double radius, double drag) {
+PastDiscs past_discs(int side, double radius, double drag) {
   const Domain<2> domain({side, side}, {true, true});
-  auto fluid = fluid_in(domain, around_disc(domain.size, radius), {force, 0});
+  auto fluid = fluid_in(domain, around_disc(domain.size, radius), {push, 0});
   // The mean velocity, which lasts longest, dies out as exp(-t viscosity drag / side^2) and faster.
-  advance(fluid, std::lround(16 * side * side / (viscosity * std::min(drag, 40.0))));
+  advance(fluid, std::lround(16 * side * side / (kinematic * std::min(drag, 40.0))));
   fluid.settle();
   const std::vector<double> rows = fluid.row_velocities();
   const double mean = std::accumulate(rows.begin(), rows.end(), 0.0) / static_cast<double>(rows.size());
-  return {force * side * side / (viscosity * mean),
+  return {push * side * side / (kinematic * mean),
           fluid.mass() / static_cast<double>(fluid.setting().solid->fluid_count())};
 }
 
@@ -119,7 +120,7 @@ TEST_CASE("the drag of cylinders in a square array is that of Sangani and Acrivo
                                     Array{0.4, 217.89}, Array{0.5, 532.55}}) {
     for (const int side : {20, 29, 41, 58, 82}) {
       const double radius = side * std::sqrt(share / pi), gap = side - 2 * radius;
-      const ArrayFlow flow = array_flow(side, radius, drag);
+      const PastDiscs flow = past_discs(side, radius, drag);
       const double off = flow.drag / drag - 1;
       std::cout << "cylinders of " << radius << " spacings, share " << share << ": drag " << flow.drag << " (" << drag
                 << "), off by " << off << ", mass " << flow.mass << std::endl;
@@ -132,10 +133,10 @@ TEST_CASE("the drag of cylinders in a square array is that of Sangani and Acrivo
 
 TEST_CASE("walls of any shape get what the force gives, and no power is lost", "[flow][walls]") {
   const Domain<2> open({40, 30}, {true, true}), between({40, 30}, {true, false});
-  const double slow = viscosity * pi * pi / (30 * 30);
-  auto disc = fluid_in(open, around_disc(open.size, 7.3), {force, 0.3 * force});
+  const double slow = kinematic * pi * pi / (30 * 30);
+  auto disc = fluid_in(open, around_disc(open.size, 7.3), {push, 0.3 * push});
   check_balances("past a disc", disc, slow / 4);
-  auto in_channel = fluid_in(between, around_disc(between.size, 7.3), {force, 0});
+  auto in_channel = fluid_in(between, around_disc(between.size, 7.3), {push, 0});
   check_balances("past a disc in a channel", in_channel, slow);
   auto sheared = fluid_in(between, around_disc(between.size, 7.3), {0, 0}, {-1e-4, 2e-4});
   check_balances("past a disc between walls that move", sheared, slow);
@@ -143,7 +144,7 @@ TEST_CASE("walls of any shape get what the force gives, and no power is lost", "
   // swinging.
   for (const double height : {6.7, 6.9}) {
     for (const WallVelocity walls : {WallVelocity{}, {1e-4, 2e-4}}) {
-      auto on_wall = fluid_in(between, outside_of(ball_region<2>({19.2, height}, 7.3)), {force, 0}, walls);
+      auto on_wall = fluid_in(between, outside_of(ball_region<2>({19.2, height}, 7.3)), {push, 0}, walls);
       check_momentum("past a disc on a wall", on_wall);
     }
   }

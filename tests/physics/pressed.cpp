@@ -119,7 +119,7 @@ std::string repelled(const std::string& type, const std::string& strength) {
 }
 
 /// Spacings of 0.2 um.
-std::vector<std::string> in_plane(const std::string& at, const std::string& interaction, const std::string& stage) {
+std::vector<std::string> ring_scene(const std::string& at, const std::string& interaction, const std::string& stage) {
   return {R"(/domain/size=["12.8 um", "8 um"])",
           "/domain/nodes=[64, 40]",
           R"(/cell_types/ring/shape={"circle": {"radius": "1.6 um"}})",
@@ -135,11 +135,11 @@ const std::string rest = R"(/stages=[{"name": "rest", "duration": "1 s"}])";
 TEST_CASE("a cell that is pressed into a corner or into a slit never crosses a wall, and one that does is noticed",
           "[walls]") {
   // An acute corner, of which both walls draw the ring in.
-  Bench<2> corner(ring, in_plane(R"("6.35 um", "4 um")", held("ring", "3e-6"), rest),
+  Bench<2> corner(ring, ring_scene(R"("6.35 um", "4 um")", held("ring", "3e-6"), rest),
                   polygon({{5, 19.5}, {55, 2}, {55, 37}}));
   press<2>("ring drawn into a corner", corner, 1);
   // Flow through a slit of a third of the ring's diameter.
-  Bench<2> slit(ring, in_plane(R"("4.4 um", "4 um")", repelled("ring", "2e-6"), flow),
+  Bench<2> slit(ring, ring_scene(R"("4.4 um", "4 um")", repelled("ring", "2e-6"), flow),
                 outside_of(union_of<2>({block(32, 40, -9, 16.5), block(32, 40, 22.5, 49), block(-1, 3, -9, 5)})));
   press<2>("ring pressed into a slit", slit, 1);
 }

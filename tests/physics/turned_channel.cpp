@@ -84,11 +84,11 @@ TurnedFlow turned_flow(const rouleau::core::Domain<Set::dimension>& domain, cons
           energetics.dissipation / power - 1};
 }
 
-TurnedFlow channel_flow(int nx, int ny, double half_height) {
+TurnedFlow along_channel(int nx, int ny, double half_height) {
   const rouleau::core::Domain<2> domain({nx, ny}, {true, true});
   return turned_flow<D2Q9>(domain, diagonal_channel(domain, half_height), half_height);
 }
-TurnedFlow tube_flow(int nx, int ny, double radius) {
+TurnedFlow along_tube(int nx, int ny, double radius) {
   const rouleau::core::Domain<3> domain({nx, ny, static_cast<int>(std::ceil(2 * radius)) + 2}, {true, true, true});
   return turned_flow<D3Q19>(domain, with_images<3>(std::make_shared<DiagonalTube>(domain, radius), domain), radius);
 }
@@ -112,7 +112,7 @@ TEST_CASE("flow through channels and tubes turned by any angle is that of Poiseu
       CHECK(fine.profile < 0.65 / (4 * half_width * half_width));
       CHECK(std::abs(fine.balance) < 1e-8);
     };
-    check("channel", channel_flow);
-    check("tube", tube_flow);
+    check("channel", along_channel);
+    check("tube", along_tube);
   }
 }
