@@ -34,7 +34,7 @@ class Samples {
   }
   /// The walls' border, counted in samples from the domain's corner.
   [[nodiscard]] core::Border<Axes> border(const core::Region<D>& region, double sign) const {
-    constexpr double far_outside = -1e6;  // so that the border passes through the sample within
+    constexpr double far_outside = -1e12;  // so that the border passes through the sample within
     std::size_t count = 1;
     for (const int along : size_) count *= static_cast<std::size_t>(along);
     std::vector<double> values(count);

@@ -109,7 +109,9 @@ void add_start(const LimitedStage& of, LimitList& limits) {
   const std::optional<NumericsChoice>& choice = of.plan.numerics_choice;
   const double allowed = choice ? choice->target : largest_error_by_start;
   const RemediedBy by = choice ? RemediedBy::nothing : of.density;  // auto has counted it already
-  const std::string remedy = "let it start \"developed\", or " + (of.plan.has_cells ? of.lower : "give it more time");
+  const bool known = scene::knows_developed_flow(*of.stage.stage, of.scene);
+  const std::string remedy =
+      (known ? "let it start \"developed\", or " : "") + (of.plan.has_cells ? of.lower : "give it more time");
   if (reports_moments(of.plan)) {
     // With convective inertia a dense fluid stands for a Reynolds number, and its start belongs to what is computed.
     if (of.scene.fluid.inertia && !choice) return;

@@ -10,6 +10,7 @@
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
 #include "numerics_problem.hpp"
+#include "scene/driving_flow.hpp"
 #include "scene/read_scene.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/outline.hpp"
@@ -95,6 +96,8 @@ void NumericsProblem::choose_density_factors(const Trial& best, NumericsChoice& 
 std::string NumericsProblem::gain_by_developed_start(const Trial& best) const {
   constexpr double little = 0.8;
   if (std::none_of(flows_.begin(), flows_.end(), [](const Flow& flow) { return flow.lag > 0; })) return {};
+  for (const scene::Stage& stage : scene_.stages)
+    if (!scene::knows_developed_flow(stage, scene_)) return {};
   NumericsProblem developed = *this;
   for (Flow& flow : developed.flows_) flow.lag = 0;
   const Trial other = developed.cheapest();

@@ -279,7 +279,8 @@ std::vector<LateStart> late_starts(const Plan& plan) {
   for (const scene::StageSetting& stage : plan.stages) {
     const StageFacts& facts = plan.facts.stages[stage.index];
     const double late = facts.start.delay, strain = facts.strain;
-    if (late > slight * strain && strain > 0) found.push_back({stage.stage->name, late, strain});
+    if (late > slight * strain && strain > 0)
+      found.push_back({stage.stage->name, late, strain, scene::knows_developed_flow(*stage.stage, *plan.scene)});
   }
   return found;
 }

@@ -44,7 +44,8 @@ struct LateStart {
   std::string stage;
   double strain;        ///< by so much
   double stage_strain;  ///< of this much
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(LateStart, stage, strain, stage_strain)
+  bool avoidable;       ///< the developed flow is known
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(LateStart, stage, strain, stage_strain, avoidable)
 };
 
 /// What walls and periodic images add to the deformation of a cell that is sheared in three dimensions, over that in a

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "plan_report.hpp"
+#include "scene/driving_flow.hpp"
 #include "units/lattice_units.hpp"
 
 namespace rouleau::plan {
@@ -53,7 +54,7 @@ void write_wells(std::ostringstream& out, const std::vector<InteractionWell>& we
   }
 }
 
-void write_choice(std::ostringstream& out, const NumericsChoice& choice) {
+void write_choice(std::ostringstream& out, const NumericsChoice& choice, bool knows_developed) {
   out << "\nNumerics, chosen for an error of " << formatted(100 * choice.target) << " % of the "
       << (choice.steady ? "steady state" : "motion") << "\n";
   for (const ChosenValue& chosen : choice.values) {
@@ -63,7 +64,7 @@ void write_choice(std::ostringstream& out, const NumericsChoice& choice) {
       << formatted(100 * choice.expected.resolution, "%.2g") << " %, relaxed density "
       << formatted(100 * choice.expected.inertia, "%.2g") << " %"
       << (choice.expected.start > 0 ? ", the start of the flow " + formatted(100 * choice.expected.start, "%.2g") +
-                                          " % (none with \"start\": \"developed\")"
+                                          (knows_developed ? " % (none with \"start\": \"developed\")" : " %")
                                     : "")
       << " (docs/accuracy.md)\n";
 }
@@ -99,7 +100,10 @@ std::string to_text(const Plan& plan, const PlanReport& report) {
   out << (scene.title.empty() ? "untitled scene" : scene.title) << "\n";
   for (const std::string& warning : report.warnings) out << "  warning: " << warning << "\n";
 
-  if (plan.numerics_choice) write_choice(out, *plan.numerics_choice);
+  if (plan.numerics_choice) {
+    const auto known = [&](const scene::Stage& stage) { return scene::knows_developed_flow(stage, scene); };
+    write_choice(out, *plan.numerics_choice, std::all_of(scene.stages.begin(), scene.stages.end(), known));
+  }
   const auto whole = [](const Conversion& row) { return row.quantity + (row.of.empty() ? "" : " (" + row.of + ")"); };
   std::size_t stage = 5, quantity = 8;
   for (const Conversion& row : report.conversions) {
@@ -128,7 +132,8 @@ std::string to_text(const Plan& plan, const PlanReport& report) {
            "unsteady term; the flow is Stokes flow.\n";
   }
   for (const LateStart& late : report.late_starts) {
-    out << "  The fluid starts from rest: " << in_words(late) << ". With \"start\": \"developed\" it would not.\n";
+    out << "  The fluid starts from rest: " << in_words(late)
+        << (late.avoidable ? ". With \"start\": \"developed\" it would not.\n" : ".\n");
   }
   if (report.box_share) {
     out << "  Walls and images " << formatted(report.box_share->radii, "%.3g") << " radii apart add "

@@ -96,6 +96,11 @@ double mean_shear_rate(const Stage& stage, const Scene& scene) {
   return steady + mean_rate(stage.oscillation.shear_rate, {stage.oscillation.pressure_gradient, 0}, scene);
 }
 
+bool knows_developed_flow(const Stage& stage, const Scene& scene) {
+  if (scene.domain.has_shapes()) return false;
+  return !scene.domain.is_duct() || (!stage.oscillates() && scene.fluid.layers.empty());
+}
+
 double start_up_strain(const Stage& stage, const Scene& scene) {
   if (stage.start == WallStart::developed || !has_walls(scene.domain)) return 0;
   const double height = wall_distance(scene.domain), nu = viscosity_range(scene.fluid).least / scene.fluid.density;

@@ -12,6 +12,9 @@ bool walls_move(const Stage& stage);
 /// walls of any shape: in a channel that is everywhere as wide as they are at the widest place).
 Vector driving_force(const Stage& stage, const Scene& scene);
 
+/// Whether the flow that a stage settles to without cells is known, so that `"start": "developed"` can begin with it.
+bool knows_developed_flow(const Stage& stage, const Scene& scene);
+
 /// Whether walls hold the fluid, across y or z.
 bool has_walls(const Domain& domain);
 /// From wall to wall, m: across y, or across z where y is periodic; the diameter of a tube, or of the largest disc or

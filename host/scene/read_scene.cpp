@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "driving_flow.hpp"
 #include "embedded_schemas.hpp"
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
@@ -102,12 +103,10 @@ void check_duct(const SceneFields& fields, const Scene& scene) {
     });
   }
   for (const Stage& stage : scene.stages) {
-    if (stage.start != WallStart::developed || !(shapes || scene.domain.is_duct())) continue;
+    if (stage.start != WallStart::developed || knows_developed_flow(stage, scene)) continue;
     const char* const unknown = stage.oscillates()            ? "an oscillation settles to"
                                 : !scene.fluid.layers.empty() ? "layers settle to"
-                                : shapes                      ? "develops"
-                                                              : nullptr;
-    if (unknown == nullptr) continue;
+                                                              : "develops";
     fields.attempt([&] {
       fields.refuse(stage.pointer + "/start", std::string("the flow that ") + unknown + ' ' + walls +
                                                   " is not known\nleave start out, and let the flow come to be");

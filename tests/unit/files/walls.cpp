@@ -83,6 +83,16 @@ TEST_CASE("polygons around a disc have its area, to second order, wherever it li
   }
 }
 
+TEST_CASE("walls that fill the corners of the domain keep these") {
+  scene::Scene scene = with_disc(31.3, 19.1, 40);
+  scene.domain.region_in_plane =
+      core::box_region<2>(core::Vec<2>(-INFINITY, 9.7 * um), core::Vec<2>(INFINITY, 31.2 * um));
+  const WallBorder walls = wall_border(scene);
+  REQUIRE(walls.first == std::vector{0, 4, 8});
+  CHECK(area(walls, 0) == Approx(60 * 9.7 * um * um).epsilon(1e-6));
+  CHECK(area(walls, 1) == Approx(60 * 8.8 * um * um).epsilon(1e-6));
+}
+
 TEST_CASE("a tube is cut by the plane through its axis into two walls, and its surface has its radius") {
   const WallBorder walls = wall_border(with_tube(40));
   REQUIRE(walls.first == std::vector<int>{0, 4, 8});  // two rectangles
