@@ -73,6 +73,12 @@ class Survey {
       : domain_(domain), region_(core::intersection<D>({std::move(region), core::between_walls(domain)})) {
     long below = 1;
     for (int k = 0; k < D; ++k) stride_[k] = std::exchange(below, below * domain.size[k]);
+    int count = 1;
+    for (int k = 0; k < D; ++k) count *= 3;
+    for (int i = count / 2 + 1; i < count; ++i) {
+      Node& way = ways_.emplace_back();
+      for (int k = 0, rest = i; k < D; ++k, rest /= 3) way[k] = rest % 3 - 1;
+    }
     layer_.resize(stride_[D - 1]);
     for (Node node{}; node[D - 1] < domain.size[D - 1]; ++node[D - 1]) add_layer(node[D - 1]);
     if (domain.periodic[D - 1]) {
@@ -125,7 +131,8 @@ class Survey {
       layer_[i] = {found.value, found.gradient};
     }
     for (long row = 0; row < static_cast<long>(rows_.size()); ++row) add_row(row, level);
-    for (int k = 0; k + 1 < D; ++k) join_along(k, level);
+    for (int k = 1; k + 1 < D; ++k) join_along(k);
+    add_ridges(level, layer_, layer_, 0);
     if (level > 0) join_layers(level - 1);
     if (level == 0) first_layer_ = layer_, first_rows_ = rows_;
   }
@@ -153,15 +160,29 @@ class Survey {
     }
   }
 
-  /// Within the layer.
-  void join_along(int axis, int level) {
-    for (long i = 0; i < stride_[D - 1]; ++i) {
+  /// Rows of the layer.
+  void join_along(int axis) {
+    for (long i = 0; i < stride_[D - 1]; i += domain_.size[0]) {
       const long at = i / stride_[axis] % domain_.size[axis];
       const bool last = at + 1 == domain_.size[axis];
       if (last && !domain_.periodic[axis]) continue;
       const long next = last ? i - at * stride_[axis] : i + stride_[axis];
-      add_ridge(level * stride_[D - 1] + i, layer_[i], layer_[next], axis);
-      if (axis > 0 && i % domain_.size[0] == 0) join_rows(rows_[i / domain_.size[0]], rows_[next / domain_.size[0]]);
+      join_rows(rows_[i / domain_.size[0]], rows_[next / domain_.size[0]]);
+    }
+  }
+
+  /// From nodes of a layer at a level to those of the same one (`up`: 0) or the next (1), each pair once.
+  void add_ridges(int level, const std::vector<Place>& from, const std::vector<Place>& to, int up) {
+    for (const Node& way : ways_) {
+      if (way[D - 1] != up) continue;
+      for (long i = 0; i < stride_[D - 1]; ++i) {
+        long there = 0;
+        for (int k = 0; k + 1 < D && there >= 0; ++k) {
+          const int next = domain_.wrapped(k, static_cast<int>(i / stride_[k] % domain_.size[k]) + way[k]);
+          there = next < 0 ? -1 : there + next * stride_[k];
+        }
+        if (there >= 0) add_ridge(level * stride_[D - 1] + i, from[i], to[there], way);
+      }
     }
   }
 
@@ -169,16 +190,18 @@ class Survey {
   void join_layers(int level) {
     const std::vector<Runs>& rows = level + 1 == domain_.size[D - 1] ? first_rows_ : rows_;
     const std::vector<Runs>& below = level + 1 == domain_.size[D - 1] ? rows_ : last_rows_;
-    for (long i = 0; i < stride_[D - 1]; ++i) add_ridge(level * stride_[D - 1] + i, last_layer_[i], layer_[i], D - 1);
+    add_ridges(level, last_layer_, layer_, 1);
     for (std::size_t row = 0; row < rows.size(); ++row) join_rows(below[row], rows[row]);
   }
 
-  void add_ridge(long node, const Place& a, const Place& b, int axis) {
+  void add_ridge(long node, const Place& a, const Place& b, const Node& way) {
     constexpr double facing = -0.8;  // of walls at less than 37 degrees
     if (!(a.gradient.dot(b.gradient) < facing)) return;
     const Vec<D> across = (a.gradient - b.gradient) / 2;
-    const double width = a.value + b.value + across[axis];
-    if (across[axis] <= 0 || width > widest_told) return;
+    double between = 0;
+    for (int k = 0; k < D; ++k) between += way[k] * across[k];
+    const double width = a.value + b.value + between;
+    if (between <= 0 || width > widest_told) return;
     const auto [known, is_new] = ridges_.try_emplace(node, Ridge{width, across.normalized()});
     if (!is_new && width < known->second.width) known->second = {width, across.normalized()};
   }
@@ -210,6 +233,7 @@ class Survey {
 
   core::Domain<D> domain_;
   core::RegionPointer<D> region_;
+  std::vector<Node> ways_;  ///< to half of the nodes around one, those that follow it
   std::array<long, D> stride_{};
   std::vector<Place> layer_, last_layer_, first_layer_;
   std::vector<Runs> rows_, last_rows_, first_rows_;
