@@ -137,11 +137,11 @@ TEST_CASE("a cell that is pressed into a corner or into a slit never crosses a w
   // An acute corner, of which both walls draw the ring in.
   Bench<2> corner(ring, ring_scene(R"("6.35 um", "4 um")", held("ring", "3e-6"), rest),
                   polygon({{5, 19.5}, {55, 2}, {55, 37}}));
-  press<2>("ring drawn into a corner", corner, 1);
+  press<2>("ring drawn into a corner", corner, 1.5);
   // Flow through a slit of a third of the ring's diameter.
-  Bench<2> slit(ring, ring_scene(R"("4.4 um", "4 um")", repelled("ring", "2e-6"), flow),
+  Bench<2> slit(ring, ring_scene(R"("4.4 um", "4 um")", repelled("ring", "2e-5"), flow),
                 outside_of(union_of<2>({block(32, 40, -9, 16.5), block(32, 40, 22.5, 49), block(-1, 3, -9, 5)})));
-  press<2>("ring pressed into a slit", slit, 1);
+  press<2>("ring pressed into a slit", slit, 1.5);
 }
 
 TEST_CASE("in three dimensions a cell that is pressed into a corner or into a slit never crosses a wall",
@@ -155,10 +155,10 @@ TEST_CASE("in three dimensions a cell that is pressed into a corner or into a sl
   // Between two tilted planes and one across z.
   Bench<3> corner(capsule, in_space(R"("5.1 um", "3 um", "2 um")", held("capsule", "3e-6"), rest),
                   extruded(polygon({{3, 11.5}, {34, -1}, {34, 24}}), 2, 0.3, 40));
-  press<3>("capsule drawn into a corner", corner, 1);
+  press<3>("capsule drawn into a corner", corner, 1.5);
   Bench<3> slit(
-      capsule, in_space(R"("3 um", "3 um", "3 um")", repelled("capsule", "2e-6"), flow),
+      capsule, in_space(R"("3 um", "3 um", "3 um")", repelled("capsule", "2e-5"), flow),
       extruded(outside_of(union_of<2>({block(20, 26, -9, 8.5), block(20, 26, 14.5, 40), block(-1, 3, -9, 4)})), 2, -20,
                50));
-  press<3>("capsule pressed into a slit", slit, 1);
+  press<3>("capsule pressed into a slit", slit, 1.5);
 }
