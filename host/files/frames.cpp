@@ -212,7 +212,7 @@ FieldGrid FrameWriter::field_grid() const {
   return grid;
 }
 
-std::string FrameWriter::xdmf() const { return xdmf_text(frames_, file_.filename().string(), field_grid()); }
+std::string FrameWriter::xdmf() const { return xdmf_text(frames_, file_.filename().string(), field_grid(), walls_); }
 
 hdf5::File open_frames(const std::filesystem::path& file) {
   const auto segment = [&](std::size_t number) {

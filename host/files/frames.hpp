@@ -108,8 +108,9 @@ class FrameWriter {
   int topologies_ = 0;
 };
 
-/// XDMF text: one temporal collection for the membranes and one for the fields, for frames 0, 1, ... of `h5`.
-std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const FieldGrid& grid);
+/// XDMF text: temporal collections for membranes and fields, for frames 0, 1, ... of `h5`, and the walls.
+std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const FieldGrid& grid,
+                      const WallBorder& walls);
 
 /// frames.h5 for reading; of a run that is still going on, or was killed, its segments, as if they were one file.
 /// Throws Error(input_output).

@@ -87,9 +87,37 @@ std::string fields(const FrameRecord& frame, const std::string& group, const Fie
   return text + "      </Grid>\n";
 }
 
+/// At all times: the surface, or the polygons, segment by segment.
+std::string wall_grid(const WallBorder& walls, const std::string& group) {
+  const auto grid = [&](const std::string& topology, std::size_t count, const std::string& facets,
+                        const std::string& geometry, const std::string& points) {
+    return "    <Grid Name=\"walls\" GridType=\"Uniform\">\n      <Topology " + topology + " NumberOfElements=\"" +
+           std::to_string(count) + "\">" + facets + "</Topology>\n      <Geometry GeometryType=\"" + geometry + "\">" +
+           points + "</Geometry>\n    </Grid>\n";
+  };
+  if (!walls.triangles.empty()) {
+    const std::string count = std::to_string(walls.triangles.size());
+    return grid("TopologyType=\"Triangle\"", walls.triangles.size(),
+                data_item(count + " 3", {"Int", 4}, group + "/triangles"), "XYZ",
+                data_item(std::to_string(walls.points.size()) + " 3", {"Float", 8}, group + "/points"));
+  }
+  if (walls.corners.empty()) return "";
+  std::string segments;
+  for (std::size_t i = 0; i + 1 < walls.first.size(); ++i) {
+    for (int at = walls.first[i]; at < walls.first[i + 1]; ++at)
+      segments +=
+          std::to_string(at) + ' ' + std::to_string(at + 1 < walls.first[i + 1] ? at + 1 : walls.first[i]) + ' ';
+  }
+  const std::string count = std::to_string(walls.corners.size());
+  return grid("TopologyType=\"Polyline\" NodesPerElement=\"2\"", walls.corners.size(),
+              "<DataItem Dimensions=\"" + count + " 2\" NumberType=\"Int\" Format=\"XML\">" + segments + "</DataItem>",
+              "XY", data_item(count + " 2", {"Float", 8}, group + "/corners"));
+}
+
 }  // namespace
 
-std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const FieldGrid& grid) {
+std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const FieldGrid& grid,
+                      const WallBorder& walls) {
   std::ostringstream membrane_grids, field_grids;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::string path = h5 + ":" + frame_path(i);
@@ -104,6 +132,7 @@ std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string&
   };
   collection("membranes", membrane_grids.str());
   collection("fields", field_grids.str());
+  text += wall_grid(walls, h5 + ":/walls");
   return text + "  </Domain>\n</Xdmf>\n";
 }
 

@@ -43,5 +43,7 @@ double enclosed(const core::Surfaces& surfaces, int cell);
 
 /// The node of a surface farthest from the line along z through its centroid: its angle about that line is told best.
 int outermost(const core::Surfaces& surfaces, int cell);
+/// Of an outline its first node.
+inline int outermost(const core::Membranes& /*membranes*/, int /*cell*/) { return 0; }
 
 }  // namespace rouleau::observe

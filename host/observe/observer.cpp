@@ -77,7 +77,7 @@ void Observer::begin_with(const Cells& cells) {
     angle_.push_back(scene_->cells[angle_.size()].angle);
     tank_treading_angle_.push_back(0);
     initial_area_.push_back(enclosed(cells, k));
-    if constexpr (std::is_same_v<Cells, core::Surfaces>) marker_.push_back(outermost(cells, k));
+    marker_.push_back(outermost(cells, k));
   }
 }
 
@@ -144,7 +144,7 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
   const std::vector<double> gaps = smallest_gaps(around, domain);
   std::vector<CellMeasures> measures;
   for (const int c : cells.own_cells()) {
-    measures.push_back(measure(cells, c, domain, region.get(), D == 2 ? 0 : marker_[c]));
+    measures.push_back(measure(cells, c, domain, region.get(), marker_[c]));
     measures.back().gap = gaps[c];
   }
   measures = core::to_first(ranks, std::move(measures));
@@ -242,7 +242,7 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
   snapshot.aggregate_size_number_mean = snapshot.aggregate_size_weight_mean = std::nan("");
   const core::AnyFluid<D>& fluid = solver.fluid();
   const bool oscillates = setting.oscillation.any();
-  const bool has_walls = !scene_->domain.periodic[1] || scene_->domain.has_shapes();
+  const bool has_walls = !scene_->domain.periodic[1] || scene_->domain.has_shapes();  // across y, or of any shape
   if (has_walls) {
     const auto stress = solver.wall_stress();
     snapshot.wall_stress_lower = units.to_si(stress.lower, units::dimension::pressure);
@@ -256,7 +256,7 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
   }
   if (is_driven_channel(setting, *scene_)) {
     const double rate = flow_rate(fluid, measured.row_velocities);
-    if (!oscillates && !scene_->domain.has_shapes())
+    if (!oscillates)
       snapshot.relative_viscosity = apparent_viscosity(rate / scene::duct_share(scene_->domain),
                                                        fluid.setting().body_force[0], setting, scene_->domain.nodes[1]);
     snapshot.flow_rate = units.to_si(rate, units::dimension::velocity) * units.length;

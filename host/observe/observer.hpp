@@ -98,7 +98,7 @@ class Observer {
   /// Of walls of any shape, made when first asked for.
   std::tuple<std::vector<WallPoint<2>>, std::vector<WallPoint<3>>> wall_points_;
   std::vector<double> initial_area_;                 ///< or volumes
-  std::vector<int> marker_;                          ///< of each surface: the node that tells its tank treading
+  std::vector<int> marker_;                          ///< of each cell: the node that tells its tank treading
   std::vector<double> angle_, tank_treading_angle_;  ///< last values, continuous
   Rotation rotation_;
   bool started_ = false;

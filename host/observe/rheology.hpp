@@ -26,7 +26,7 @@ double flow_rate(const core::AnyFluid<D>& fluid) {
   return flow_rate(fluid, fluid.row_velocities());
 }
 
-/// Integral of the velocity along x over what the cells enclose, lattice units: of their membranes' velocities, for
+/// Integral of the velocity along x over what the cells enclose, lattice units: from their membranes' velocities, for
 /// what they enclose keeps its volume. All ranks together.
 double cell_flux(const core::Membranes& membranes, const core::Ranks<2>& ranks = {});
 double cell_flux(const core::Surfaces& surfaces, const core::Ranks<3>& ranks = {});

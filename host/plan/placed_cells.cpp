@@ -12,6 +12,7 @@
 #include "core/contact/cell_grid.hpp"
 #include "core/contact/crossing.hpp"
 #include "core/contact/wall_gap.hpp"
+#include "core/geometry/parts.hpp"
 #include "core/membrane/geometry.hpp"
 #include "estimate.hpp"
 #include "scene/cell_table.hpp"
@@ -19,7 +20,6 @@
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
 #include "shape/surface.hpp"
-#include "shape/vessel.hpp"
 
 namespace rouleau::plan {
 namespace {
@@ -105,11 +105,7 @@ class PlacementChecker {
         domain_(scene::lattice_domain<D>(scene)),
         region_(scene::fluid_region<D>(scene)),
         boxes_(core::boxes_of<D>(cells)) {
-    if (!scene.domain.has_shapes()) return;
-    for (const auto& piece : shape::wall_pieces<D>(scene.domain)) {
-      core::Vec<D>& place = pieces_.emplace_back(piece.data());
-      place = place.array() / spacing - 0.5;
-    }
+    if (scene.domain.has_shapes()) pieces_ = core::pieces_outside<D>(*region_, domain_);
   }
 
   void check() const {
@@ -246,7 +242,7 @@ class PlacementChecker {
   std::span<const int> numbers_;
   core::Domain<D> domain_;
   core::RegionPointer<D> region_;     ///< of a tube, or between walls of any shape
-  std::vector<core::Vec<D>> pieces_;  ///< a place in each piece of these
+  std::vector<core::Vec<D>> pieces_;  ///< a node in each piece of these
   std::vector<core::BoundingBox<D>> boxes_;
 };
 

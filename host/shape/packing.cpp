@@ -7,11 +7,12 @@
 
 #include "center_grid.hpp"
 #include "core/geometry/formulas.hpp"
+#include "core/geometry/parts.hpp"
 #include "extent.hpp"
 #include "outline.hpp"
 #include "rigid_outline.hpp"
 #include "rigid_surface.hpp"
-#include "vessel.hpp"
+#include "walls.hpp"
 
 namespace rouleau::shape {
 
@@ -31,7 +32,19 @@ constexpr int most_draws = 10000;
 double region_content(const scene::RandomPacking& packing, const scene::Domain& domain) {
   const scene::Vector size = packing.upper - packing.lower;
   if (domain.tube_radius) return domain.content() * size.x() / domain.size.x();
-  return domain.has_shapes() ? fluid_content(domain, packing.lower, packing.upper) : size.product();
+  if (!domain.has_shapes()) return size.product();
+  if (size.product() >= domain.size.product()) return domain.content();
+  return scene::in_dimension(domain.dimension(), [&]<int D>(std::integral_constant<int, D>) {
+    const core::Vec<D> middle = (packing.lower + packing.upper).in<D>() / 2, half = size.in<D>() / 2;
+    return core::content_of<D>(*domain.region<D>(), middle, half, content_halvings);
+  });
+}
+
+/// The inside of a tube through the middle of a box; there are tubes in three dimensions alone.
+core::RegionPointer<2> inside_tube(const std::array<Axis, 2>& /*box*/, double /*radius*/) { return {}; }
+core::RegionPointer<3> inside_tube(const std::array<Axis, 3>& box, double radius) {
+  const core::Vec<2> axis(0.5 * box[1].upper, 0.5 * box[2].upper);
+  return core::extruded(core::ball_region<2>(axis, radius), 0, -INFINITY, INFINITY);
 }
 
 /// Where the cells of one packing may be, and how near to others.
@@ -63,17 +76,9 @@ class Packer {
     }
     if (domain.has_shapes()) {
       region_ = core::magnified<D>(domain.region<D>(), 1 / unit, core::Vec<D>::Zero());
-      for (const Place<D>& place : wall_pieces<D>(domain)) {
-        Place<D>& piece = pieces_.emplace_back();
-        for (int k = 0; k < D; ++k) piece[k] = place[k] / unit;
-      }
+      find_pieces();
     }
-    if constexpr (D == 3) {
-      if (domain.tube_radius)
-        region_ =
-            core::extruded(core::ball_region<2>({0.5 * box_[1].upper, 0.5 * box_[2].upper}, *domain.tube_radius / unit),
-                           0, -INFINITY, INFINITY);
-    }
+    if (domain.tube_radius) region_ = inside_tube(box_, *domain.tube_radius / unit);
     double gap = 0;
     for (const scene::RandomPacking& packing : packings) {
       territories_.push_back(territory(packing));
@@ -112,6 +117,20 @@ class Packer {
     for (const scene::RandomPacking& packing : packings) seeds.push_back(packing.seed);
     std::seed_seq sequence(seeds.begin(), seeds.end());
     return RandomNumbers(sequence);
+  }
+
+  /// As the lattice has them.
+  void find_pieces() {
+    std::array<int, D> nodes;
+    std::array<bool, D> periodic;
+    std::copy_n(domain_.nodes.begin(), D, nodes.begin());
+    std::copy_n(domain_.periodic.begin(), D, periodic.begin());
+    const double spacing = domain_.size.x() / domain_.nodes[0];
+    const auto region = core::magnified<D>(domain_.region<D>(), 1 / spacing, core::Vec<D>::Constant(-0.5));
+    for (const core::Vec<D>& node : core::pieces_outside<D>(*region, {nodes, periodic})) {
+      Place<D>& piece = pieces_.emplace_back();
+      for (int k = 0; k < D; ++k) piece[k] = (node[k] + 0.5) * spacing / unit_;
+    }
   }
 
   [[nodiscard]] Territory<D> territory(const scene::RandomPacking& packing) const {

@@ -10,6 +10,7 @@
 #include "base/text.hpp"
 #include "core/geometry/faceted.hpp"
 #include "core/geometry/formulas.hpp"
+#include "core/geometry/parts.hpp"
 #include "core/geometry/region.hpp"
 #include "scene/scene_reader.hpp"
 #include "wall_borders.hpp"
@@ -224,7 +225,7 @@ class Measure {
     Vec<D> half;
     for (int k = 0; k < D; ++k) half[k] = 0.5 * domain.size[k];
     const Vec<D> middle = half - Vec<D>::Constant(0.5);
-    add_content(middle, half, content_halvings);
+    content = core::content_of<D>(region, middle, half, content_halvings);
     seek_width(middle, half, content_halvings);
   }
   double content = 0;
@@ -240,20 +241,6 @@ class Measure {
     visit(middle, half);
     middle[longest] += 2 * half[longest];
     visit(middle, half);
-  }
-
-  void add_content(const Vec<D>& middle, const Vec<D>& half, int halvings) {
-    const core::Distance<D> found = region_.distance(middle);
-    const double whole = (2 * half).prod(), reach = half.norm();
-    if (found.value <= -reach) return;
-    if (found.value >= reach) {
-      content += whole;
-    } else if (halvings > 0) {
-      halve(middle, half, [&](const Vec<D>& m, const Vec<D>& h) { add_content(m, h, halvings - 1); });
-    } else {
-      const double across = half.dot(found.gradient.cwiseAbs());
-      content += whole * std::clamp(0.5 + found.value / (2 * across), 0.0, 1.0);
-    }
   }
 
   void seek_width(const Vec<D>& middle, const Vec<D>& half, int halvings) {

@@ -28,7 +28,6 @@ std::string why_no_exact_flow(const scene::Scene& scene) {
 }
 std::string why_no_exact_flow(const Quantity& quantity, const scene::Scene& scene, const scene::Stage& stage,
                               bool first) {
-  if (scene.domain.has_shapes()) return "the flow between walls of any shape is not known";
   if (quantity.poiseuille && scene::driving_force(stage, scene).x() == 0)
     return "nothing drives the fluid along x in the stage " + stage.name;
   if (stage.oscillates()) return "what drives the stage " + stage.name + " oscillates";

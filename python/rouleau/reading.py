@@ -482,7 +482,7 @@ MOST_EMPTY_COLUMNS = 0.05
 #: Columns of series.csv whose mean over a stage says something.
 MEANS = ("relative_viscosity", "particle_stress_Pa", "aggregate_size_number_mean", "aggregate_size_weight_mean",
          "cell_free_layer_lower_m", "cell_free_layer_upper_m", "flow_rate_m2_per_s",
-         "mean_velocity_m_per_s")
+         "mean_velocity_m_per_s", "discharge_hematocrit")
 
 
 def open(directory: str | os.PathLike[str]) -> Run:  # noqa: A001

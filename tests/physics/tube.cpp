@@ -117,6 +117,11 @@ TEST_CASE("a stiff capsule on the axis of a tube twice as wide moves as a rigid 
     CHECK(run.column("deformation")[n] < 1e-3);
     CHECK(run.column("y_m")[n] == Approx(3e-6).epsilon(1e-9));
     CHECK(run.column("wall_gap_m")[n] == Approx(1.5e-6).epsilon(2e-3));
+    // What the capsule carries of the flow, by where its centre goes: more than its share of the tube.
+    const double volume = run.column("volume_m3")[n], length = 9e-6;
+    const double discharge = run.series_column("discharge_hematocrit")[n];
+    CHECK(discharge == Approx(volume * speed * 2 * 2e-4 / (rate[n] * 6e-6 * length)).epsilon(2e-3));
+    CHECK(discharge > 1.4 * volume / (pi * 9e-12 * length));
     CHECK(run.summary["conservation"]["area_drift_max"].get<double>() < 1e-3);
   }
 }
