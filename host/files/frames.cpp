@@ -11,12 +11,6 @@
 
 namespace rouleau::files {
 
-std::string frame_path(std::size_t frame) {
-  std::string digits = std::to_string(frame);
-  if (digits.size() < 6) digits.insert(0, 6 - digits.size(), '0');
-  return "/frames/" + digits;
-}
-
 bool equal_cells(const std::vector<int>& first) {
   for (std::size_t cell = 0; cell + 1 < first.size(); ++cell)
     if (first[cell + 1] - first[cell] != first[1] - first[0]) return false;

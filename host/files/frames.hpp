@@ -30,29 +30,12 @@
 #include <vector>
 
 #include "frame_segments.hpp"
+#include "frames_xdmf.hpp"
 #include "hdf5/hdf5_file.hpp"
 #include "observe/snapshot.hpp"
 #include "scene/scene.hpp"
-#include "walls.hpp"
 
 namespace rouleau::files {
-
-/// What frames.xmf has to know about a frame.
-struct FrameRecord {
-  double time = 0;                   ///< s
-  std::size_t nodes = 0, cells = 0;  ///< of membranes; 0: none
-  std::size_t connectivity = 0;      ///< entries
-  bool uniform = false;              ///< all cells have the same number of nodes
-  bool surfaces = false;             ///< triangles, of three nodes each, and not outlines
-  std::vector<std::string> fields;   ///< datasets under fields/
-};
-
-/// Where the nodes lie that the fields are given at, and how their numbers are stored.
-struct FieldGrid {
-  std::vector<double> origin, spacing;  ///< m, of the first node, and between nodes; along x, y and, if there is one, z
-  std::vector<int> nodes;
-  int bytes = 4;  ///< of a number
-};
 
 /// Writes frames.h5, in segments (frame_segments.hpp) so that no more than what follows the last checkpoint is lost
 /// when the program is killed. What a reader finds in frames.h5 does not depend on the number of segments. Every member
@@ -108,10 +91,6 @@ class FrameWriter {
   int topologies_ = 0;
 };
 
-/// XDMF text: temporal collections for membranes and fields, for frames 0, 1, ... of `h5`, and the walls.
-std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const FieldGrid& grid,
-                      const WallBorder& walls);
-
 /// frames.h5 for reading; of a run that is still going on, or was killed, its segments, as if they were one file.
 /// Throws Error(input_output).
 hdf5::File open_frames(const std::filesystem::path& file);
@@ -138,8 +117,6 @@ class FrameReader {
   hdf5::File file_;
 };
 
-/// "/frames/000012"
-std::string frame_path(std::size_t frame);
 /// All cells have the same number of nodes; `first` as in OutlineSnapshot.
 bool equal_cells(const std::vector<int>& first);
 /// The datasets that a frame's fields may have, in the order of frames.xmf.

@@ -1,10 +1,16 @@
-// frames.xmf: tells ParaView what the datasets of frames.h5 mean.
+#include "frames_xdmf.hpp"
+
 #include <sstream>
 
-#include "frames.hpp"
 #include "tables.hpp"
 
 namespace rouleau::files {
+
+std::string frame_path(std::size_t frame) {
+  std::string digits = std::to_string(frame);
+  if (digits.size() < 6) digits.insert(0, 6 - digits.size(), '0');
+  return "/frames/" + digits;
+}
 
 namespace {
 
