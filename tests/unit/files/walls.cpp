@@ -144,6 +144,8 @@ TEST_CASE("walls are the same in a run's frames, in one file, in segments, and w
     const WallBorder found = FrameReader(file).walls();
     CHECK(found.corners == walls.corners);
     CHECK(found.first == walls.first);
+    CHECK_THAT(writer.xdmf(),
+               Catch::Matchers::Contains("<Grid Name=\"walls\"") && Catch::Matchers::Contains(":/walls/corners"));
   }
 }
 
