@@ -242,7 +242,8 @@ class Survey {
 
 template <int D>
 scene::Passages surveyed(const scene::Scene& scene) {
-  Survey<D> survey(scene::fluid_region<D>(scene), scene::lattice_domain<D>(scene));
+  const core::RegionPointer<D> region = scene::fluid_region<D>(scene);
+  Survey<D> survey(region, scene::lattice_domain<D>(scene));
   const double spacing = scene::lattice_spacing(scene);
   const auto place_of = [&](long number) {
     const auto node = survey.node_of(number);
@@ -251,8 +252,20 @@ scene::Passages surveyed(const scene::Scene& scene) {
     return place;
   };
   scene::Passages found;
-  const auto [narrowest, at] = survey.narrowest();
-  if (at >= 0) found.narrowest = narrowest, found.narrowest_at = place_of(at);
+  // On a coarse lattice narrow passages hide between nodes: they are looked for on a finer one.
+  constexpr double many = 1 << 20;
+  int finer = 1;
+  while (finer < 4 && scene.domain.node_count() * std::pow(finer + 1, D) <= many) ++finer;
+  core::Domain<D> domain = scene::lattice_domain<D>(scene);
+  for (int& nodes : domain.size) nodes *= finer;
+  const Survey<D> fine(core::magnified<D>(region, finer, Vec<D>::Constant(0.5 * finer - 0.5)),
+                       {domain.size, domain.periodic});
+  if (const auto [narrowest, at] = fine.narrowest(); at >= 0) {
+    found.narrowest = narrowest / finer;
+    const auto node = fine.node_of(at);
+    found.narrowest_at = scene::Vector::filled(D, 0);
+    for (int k = 0; k < D; ++k) found.narrowest_at[k] = units::coordinate(node[k], spacing / finer);
+  }
   double all = 0;
   int largest = -1;
   found.through_x = false;

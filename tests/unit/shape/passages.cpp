@@ -40,7 +40,7 @@ TEST_CASE("the narrowest passage is found between discs, across a period, and be
   CHECK(row.narrowest_at.x() == Approx(20 * um).margin(0.5 * um));
   CHECK(row.narrowest_at.y() == Approx(13 * um).margin(0.5 * um));
   const auto none = passages(plane + R"("y": "periodic", "obstacles": [)" + disc(20, 10, 1) + "]");
-  CHECK(none.narrowest > 64);
+  CHECK(none.narrowest > 16);
 }
 
 TEST_CASE("the width of a channel at an angle is that from wall to wall") {

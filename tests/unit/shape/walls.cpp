@@ -102,7 +102,7 @@ TEST_CASE("an outline stands along z, all along it or between two heights") {
   CHECK(distance(post, 33, 19, 1) == about(5));
   CHECK(post.domain.content() == Approx(600 * 20 * um * um * um).epsilon(1e-5));
   CHECK(distance(block, 20, 10, 7) == about(3));
-  CHECK(distance(block, 20, 10, 17) == about(2));  // to its image below
+  CHECK(distance(block, 20, 10, 17) == about(2));                                              // to its image below
   CHECK(block.domain.content() == Approx((800 * 20 - 200 * 5) * um * um * um).epsilon(1e-4));  // it has edges
 }
 
