@@ -3,7 +3,7 @@
 //   /                      attributes format, title, size_m [2], nodes [2], periodic_y; where output.fields has a
 //                          region or a stride: fields_first_m [2], fields_spacing_m [2]; each [3] in three
 //                          dimensions, with periodic_z
-//   /walls                 corners, first; in three dimensions points, triangles: see WallBorder (walls.hpp)
+//   /walls                 corners, first, segments; in three dimensions points, triangles: see WallBorder (walls.hpp)
 //   /frames/000000         attributes step, time_s, strain, stage, stage_name
 //     membranes/points     [n, 2] f64, m, not wrapped into the box; [n, 3] in three dimensions
 //     membranes/tension    [n] f64, N/m, of the segment from this node to the cell's next one; of a surface the mean of

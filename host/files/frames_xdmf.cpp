@@ -93,31 +93,23 @@ std::string fields(const FrameRecord& frame, const std::string& group, const Fie
   return text + "      </Grid>\n";
 }
 
-/// At all times: the surface, or the polygons, segment by segment.
+/// At all times: segments, or in three dimensions triangles.
 std::string wall_grid(const WallBorder& walls, const std::string& group) {
-  const auto grid = [&](const std::string& topology, std::size_t count, const std::string& facets,
-                        const std::string& geometry, const std::string& points) {
-    return "    <Grid Name=\"walls\" GridType=\"Uniform\">\n      <Topology " + topology + " NumberOfElements=\"" +
-           std::to_string(count) + "\">" + facets + "</Topology>\n      <Geometry GeometryType=\"" + geometry + "\">" +
-           points + "</Geometry>\n    </Grid>\n";
+  const auto grid = [&](const std::string& topology, std::size_t facets, const std::string& facets_name,
+                        const std::string& geometry, std::size_t points, const std::string& points_name) {
+    if (facets == 0) return std::string();
+    const std::string columns = ' ' + std::to_string(geometry.size()), count = std::to_string(facets);
+    return "    <Grid Name=\"walls\" GridType=\"Uniform\">\n        <Topology TopologyType=" + topology +
+           " NumberOfElements=\"" + count + "\">" + data_item(count + columns, {"Int", 4}, group + facets_name) +
+           "</Topology>\n        <Geometry GeometryType=\"" + geometry + "\">" +
+           data_item(std::to_string(points) + columns, {"Float", 8}, group + points_name) +
+           "</Geometry>\n    </Grid>\n";
   };
-  if (!walls.triangles.empty()) {
-    const std::string count = std::to_string(walls.triangles.size());
-    return grid("TopologyType=\"Triangle\"", walls.triangles.size(),
-                data_item(count + " 3", {"Int", 4}, group + "/triangles"), "XYZ",
-                data_item(std::to_string(walls.points.size()) + " 3", {"Float", 8}, group + "/points"));
-  }
-  if (walls.corners.empty()) return "";
-  std::string segments;
-  for (std::size_t i = 0; i + 1 < walls.first.size(); ++i) {
-    for (int at = walls.first[i]; at < walls.first[i + 1]; ++at)
-      segments +=
-          std::to_string(at) + ' ' + std::to_string(at + 1 < walls.first[i + 1] ? at + 1 : walls.first[i]) + ' ';
-  }
-  const std::string count = std::to_string(walls.corners.size());
-  return grid("TopologyType=\"Polyline\" NodesPerElement=\"2\"", walls.corners.size(),
-              "<DataItem Dimensions=\"" + count + " 2\" NumberType=\"Int\" Format=\"XML\">" + segments + "</DataItem>",
-              "XY", data_item(count + " 2", {"Float", 8}, group + "/corners"));
+  const std::string surface =
+      grid("\"Triangle\"", walls.triangles.size(), "/triangles", "XYZ", walls.points.size(), "/points");
+  if (!surface.empty()) return surface;
+  return grid("\"Polyline\" NodesPerElement=\"2\"", walls.segments.size(), "/segments", "XY", walls.corners.size(),
+              "/corners");
 }
 
 }  // namespace

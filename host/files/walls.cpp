@@ -55,6 +55,16 @@ class Samples {
       for (core::Vec<Axes>& corner : border.corners) corner -= core::Vec<Axes>::Constant(1);
     return border;
   }
+  /// Whether two places, counted in samples, lie at one end of the domain.
+  [[nodiscard]] bool at_an_end(const core::Vec<Axes>& place, const core::Vec<Axes>& other) const {
+    constexpr double near = 1e-3;
+    for (int k = 0; k < Axes; ++k) {
+      const double length = size_[k] - (beyond_ ? 3 : 1);
+      for (const double end : {0.0, length})
+        if (std::abs(place[k] - end) < near && std::abs(other[k] - end) < near) return true;
+    }
+    return false;
+  }
   /// In m of the domain, of a place counted in samples.
   [[nodiscard]] std::array<double, Axes> metres(const core::Vec<Axes>& place, double lattice_spacing) const {
     std::array<double, Axes> found;
@@ -124,7 +134,13 @@ void add_polygons(const core::Region<D>& region, const core::Domain<D>& domain, 
   for (const Places& polygon : polygons_of(samples.border(region, -1))) {
     const Places corners = simplified(polygon);
     if (corners.empty()) continue;
-    for (const core::Vec<2>& corner : corners) walls.corners.push_back(samples.metres(corner, spacing));
+    const auto count = static_cast<int>(corners.size());
+    for (int i = 0; i < count; ++i) {
+      const int next = (i + 1) % count;
+      if (!samples.at_an_end(corners[std::size_t(i)], corners[std::size_t(next)]))
+        walls.segments.push_back({walls.first.back() + i, walls.first.back() + next});
+      walls.corners.push_back(samples.metres(corners[std::size_t(i)], spacing));
+    }
     walls.first.push_back(static_cast<int>(walls.corners.size()));
   }
 }
@@ -157,6 +173,11 @@ void write_places(hdf5::File& file, const std::string& path, const std::vector<s
 }
 
 template <std::size_t N>
+void write_facets(hdf5::File& file, const std::string& path, const std::vector<std::array<int, N>>& facets) {
+  if (!facets.empty()) file.write(path, {facets.size(), N}, H5T_STD_I32LE, H5T_NATIVE_INT, facets.data(), "1");
+}
+
+template <std::size_t N>
 std::vector<std::array<double, N>> read_places(const hdf5::File& file, const std::string& path) {
   const std::vector<double> values = file.read(path);
   std::vector<std::array<double, N>> places(values.size() / N);
@@ -179,11 +200,11 @@ void write_walls(hdf5::File& file, const WallBorder& walls) {
   if (!walls.corners.empty()) {
     write_places(file, "/walls/corners", walls.corners);
     file.write("/walls/first", walls.first, "1");
+    write_facets(file, "/walls/segments", walls.segments);
   }
   if (walls.triangles.empty()) return;
   write_places(file, "/walls/points", walls.points);
-  file.write("/walls/triangles", {walls.triangles.size(), 3}, H5T_STD_I32LE, H5T_NATIVE_INT, walls.triangles.data(),
-             "1");
+  write_facets(file, "/walls/triangles", walls.triangles);
 }
 
 WallBorder read_walls(const hdf5::File& file) {
@@ -203,17 +224,19 @@ WallBorder read_walls(const hdf5::File& file) {
     }
     require(!walls.first.empty(), "/walls/first");
   }
-  if (file.has("/walls/triangles")) {
-    walls.points = read_places<3>(file, "/walls/points");
-    const std::vector<double> numbers = file.read("/walls/triangles");
-    for (std::size_t i = 0; i + 3 <= numbers.size(); i += 3) {
-      std::array<int, 3>& triangle = walls.triangles.emplace_back();
-      for (std::size_t k = 0; k < 3; ++k) {
-        require(numbers[i + k] >= 0 && numbers[i + k] < double(walls.points.size()), "/walls/triangles");
-        triangle[k] = static_cast<int>(numbers[i + k]);
-      }
+  const auto read_facets = [&](auto& facets, const char* dataset, std::size_t corners) {
+    if (!file.has(dataset)) return;
+    const std::vector<double> numbers = file.read(dataset);
+    for (std::size_t i = 0, n = 0; i < numbers.size(); ++i) {
+      require(numbers[i] >= 0 && numbers[i] < double(corners), dataset);
+      if (n == 0) facets.emplace_back();
+      facets.back()[n] = static_cast<int>(numbers[i]);
+      n = (n + 1) % facets.back().size();
     }
-  }
+  };
+  if (file.has("/walls/points")) walls.points = read_places<3>(file, "/walls/points");
+  read_facets(walls.segments, "/walls/segments", walls.corners.size());
+  read_facets(walls.triangles, "/walls/triangles", walls.points.size());
   return walls;
 }
 

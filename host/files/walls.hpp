@@ -15,6 +15,8 @@ struct WallBorder {
   /// around what the plane across z through the domain's middle cuts of them. They end at the domain's ends.
   std::vector<std::array<double, 2>> corners;
   std::vector<int> first{0};
+  /// Sides of these polygons, as numbers of their corners, that fluid meets: not those at the domain's ends.
+  std::vector<std::array<int, 2>> segments;
   /// In three dimensions the walls' surface, its triangles counter-clockwise seen from the wall. It is open where the
   /// domain ends.
   std::vector<std::array<double, 3>> points;

@@ -28,7 +28,6 @@ class Animation {
     [this.lx, this.ly] = data.domain.size_um;
     this.centre = [this.lx / 2, this.ly / 2];
     this.walls = !data.domain.periodic_y;
-    this.solid = data.walls && wallPolygons(data.walls, this.lx, this.ly);
     this.canvas = element("canvas", {class: "view", role: "img", tabindex: 0, "aria-label": this.description()});
     this.tip = element("div", {class: "tip", role: "status", hidden: ""});
     this.bar = element("div", {class: "bar"});
@@ -173,7 +172,7 @@ class Animation {
     const acrossX = (low, high) => images(low, high, lx, clip.left, clip.right), acrossY = (low, high) => this.walls ? [0] : images(low, high, ly, clip.bottom, clip.top);
     const flow = this.fields?.between(this.between) ?? null, under = this.paintField(context, flow, scale, acrossX, acrossY);
     if (flow && view.tracers && this.fields.moves) this.paintTracers(context, flow, scale, acrossX);
-    if (this.solid) this.paintSolid(context, scale, acrossX, acrossY);
+    if (this.data.walls) this.paintSolid(context, scale, acrossX, acrossY);
     if (nodes) this.paintCells(context, nodes, scale, under, acrossX, acrossY);
     if (this.failed()) this.paintFailure(context, scale, acrossX);
     context.restore();
@@ -254,18 +253,15 @@ class Animation {
 
   /// Walls that are no planes: filled, so that what the lattice has in them is not seen as fluid, with a thick line where they meet it.
   paintSolid(context, scale, acrossX, acrossY) {
-    context.fillStyle = css("--wall"); context.strokeStyle = css("--text"); context.lineWidth = 2;
+    const {corners_um: corners, first, segments} = this.data.walls;
+    context.fillStyle = css("--wall"); context.strokeStyle = css("--text"); context.lineWidth = 2; context.lineCap = "round";
     for (const dx of acrossX(0, this.lx)) for (const dy of acrossY(0, this.ly)) {
+      const to = (draw, corner) => context[draw]((corners[2 * corner] + dx) * scale, (corners[2 * corner + 1] + dy) * scale);
       context.beginPath();
-      for (const {corners} of this.solid) { corners.forEach(([x, y], i) => context[i ? "lineTo" : "moveTo"]((x + dx) * scale, (y + dy) * scale)); context.closePath(); }
+      for (let p = 0; p + 1 < first.length; ++p) { for (let i = first[p]; i < first[p + 1]; ++i) to(i === first[p] ? "moveTo" : "lineTo", i); context.closePath(); }
       context.fill();
       context.beginPath();
-      for (const {corners, meets} of this.solid) corners.forEach(([x, y], i) => {
-        if (!meets[i]) return;
-        const [nx, ny] = corners[(i + 1) % corners.length];
-        if (!i || !meets[i - 1]) context.moveTo((x + dx) * scale, (y + dy) * scale);
-        context.lineTo((nx + dx) * scale, (ny + dy) * scale);
-      });
+      segments.forEach(([a, b], i) => { if (!i || segments[i - 1][1] !== a) to("moveTo", a); to("lineTo", b); });
       context.stroke();
     }
   }

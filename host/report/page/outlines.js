@@ -36,17 +36,6 @@ class Outlines {
   }
 }
 
-/// Polygons around walls, which lie at their left: {corners [x, y] in micrometres, meets: whether the side from there to the next one is the fluid's,
-/// and no end of the domain}.
-function wallPolygons({corners_um, first}, lx, ly) {
-  const place = i => [corners_um[2 * i], corners_um[2 * i + 1]], near = (a, b) => Math.abs(a - b) < 1e-4 * (lx + ly);
-  return first.slice(0, -1).map((from, p) => {
-    const corners = Array.from({length: first[p + 1] - from}, (_, i) => place(from + i));
-    const atEnd = ([x, y], [nx, ny]) => [[x, nx, 0], [x, nx, lx], [y, ny, 0], [y, ny, ly]].some(([a, b, end]) => near(a, end) && near(b, end));
-    return {corners, meets: corners.map((corner, i) => !atEnd(corner, corners[(i + 1) % corners.length]))};
-  });
-}
-
 /// Interpolated colours as css texts. Cividis, and blue to orange: both in order for every eye.
 const rampStops = {
   cividis: ["#00204d", "#2b3f6d", "#575c6d", "#7c7b78", "#a69d75", "#d3c164", "#ffe945"],
