@@ -100,7 +100,6 @@ void FrameWriter::link_segments() const {
   try {
     hdf5::File all(partial, hdf5::File::Mode::create);
     write_header(all);
-    if (!walls_.facets.empty()) all.link_to(segment_name(1), walls_group);
     std::set<std::string> linked;
     for (std::size_t i = 0; i < saved_.segments.size(); ++i) {
       const hdf5::File part(segment(i + 1), hdf5::File::Mode::read);
