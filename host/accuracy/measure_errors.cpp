@@ -18,7 +18,9 @@
 #include "run/simulation.hpp"
 #include "scene/read_scene.hpp"
 #include "scene/scene_reader.hpp"
+#include "shape/passages.hpp"
 #include "shape/random_cells.hpp"
+#include "shape/walls.hpp"
 #include "trial/trial.hpp"
 
 namespace rouleau::accuracy {
@@ -45,7 +47,9 @@ scene::Scene read(const Companion& companion, const std::string& file) {
   Faults faults;
   scene::Scene scene = scene::read_scene(
       std::make_shared<json::Document>(json::Document::parse(companion.scene.dump(2) + "\n", file)), faults);
+  if (faults.empty()) shape::build_walls(scene, faults);
   faults.raise();
+  shape::survey_walls(scene);
   shape::add_random_cells(scene);
   shape::pack_cells(scene);
   return scene;
