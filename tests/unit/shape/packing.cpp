@@ -322,7 +322,7 @@ TEST_CASE("cells in a round vessel keep their gap from its wall, from posts and 
     wall = std::min(wall, beyond.norm());
   });
   CHECK(wall >= gap);
-  CHECK(wall <= 1.5 * gap);
+  CHECK(wall <= gap + 0.3 * um);  // half a segment more, which is longer than the gap
   int around = 0;
   for (const Points& outline : outlines(packed.scene)) {
     enclosed += area(outline);
