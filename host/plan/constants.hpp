@@ -196,8 +196,8 @@ inline constexpr double file = 12100, frame = 256, membranes = 1244, fields = 97
 }  // namespace hdf5
 /// Bytes of a row of the tables [files].
 namespace row {
-inline constexpr double cells = 263, wall_gap = 19, aggregates = 59, series = 363, series_of_fluid = 235, sizes = 48,
-                        all_headers = 860;
+inline constexpr double cells = 263, wall_gap = 19, aggregates = 59, series = 372, series_of_fluid = 239, sizes = 48,
+                        all_headers = 881;
 }  // namespace row
 
 }  // namespace rouleau::plan
