@@ -34,7 +34,8 @@ class Samples {
   }
   /// The walls' border, counted in samples from the domain's corner.
   [[nodiscard]] core::Border<Axes> border(const core::Region<D>& region, double sign) const {
-    constexpr double far_outside = -1e12;  // so that the border passes through the sample within
+    // So that the border passes by the sample within, if not through it: triangles without size have no orientation.
+    constexpr double far_outside = -1e3, least = 1e-6;
     std::size_t count = 1;
     for (const int along : size_) count *= static_cast<std::size_t>(along);
     std::vector<double> values(count);
@@ -49,18 +50,19 @@ class Samples {
         place[k] += at * spacing_[k];
       }
       values[i] = within ? sign * region.distance(place).value : far_outside;
+      if (beyond_ && std::abs(values[i]) < least) values[i] = -least;
     }
     core::Border<Axes> border = core::zero_border<Axes>(values, size_);
-    if (beyond_)
-      for (core::Vec<Axes>& corner : border.corners) corner -= core::Vec<Axes>::Constant(1);
+    for (core::Vec<Axes>& corner : border.corners) {
+      for (int k = 0; k < Axes && beyond_; ++k) corner[k] = std::clamp(corner[k] - 1, 0.0, length(k));
+    }
     return border;
   }
   /// Whether two places, counted in samples, lie at one end of the domain.
   [[nodiscard]] bool at_an_end(const core::Vec<Axes>& place, const core::Vec<Axes>& other) const {
     constexpr double near = 1e-3;
     for (int k = 0; k < Axes; ++k) {
-      const double length = size_[k] - (beyond_ ? 3 : 1);
-      for (const double end : {0.0, length})
+      for (const double end : {0.0, length(k)})
         if (std::abs(place[k] - end) < near && std::abs(other[k] - end) < near) return true;
     }
     return false;
@@ -73,6 +75,8 @@ class Samples {
   }
 
  private:
+  [[nodiscard]] double length(int axis) const { return size_[axis] - (beyond_ ? 3 : 1); }
+
   bool beyond_;
   core::Vec<D> origin_;
   std::array<double, Axes> spacing_;

@@ -120,6 +120,25 @@ TEST_CASE("a tube is cut by the plane through its axis into two walls, and its s
     CHECK(std::hypot(point[1] - 20 * um, point[2] - 20 * um) == Approx(18 * um).epsilon(1.0 / (8 * 18 * 18) * 2));
 }
 
+TEST_CASE("boxes that lie on samples and at the domain's end have four corners, and the area that they have") {
+  for (const int nodes : {24, 32, 48, 64}) {
+    scene::Scene scene = small_scene();
+    scene.domain.size = {160 * um, 40 * um};
+    scene.domain.nodes = {4 * nodes, nodes};
+    scene.domain.periodic = {true, false, true};
+    scene.domain.obstacles.resize(2);
+    const auto box = [](double lower, double upper) {
+      return core::outside_of<2>(core::box_region<2>({60 * um, lower * um}, {80 * um, upper * um}));
+    };
+    scene.domain.region_in_plane = core::intersection<2>({box(0, 10), box(30, 40)});
+    const WallBorder walls = wall_border(scene);
+    REQUIRE(walls.first.size() == 3);
+    CHECK(area(walls) == Approx(2 * 20 * 10 * um * um).epsilon(0.01));  // corners are rounded within a sample
+    CHECK(walls.segments.size() >= 6);
+    for (const std::size_t polygon : {0u, 1u}) CHECK(area(walls, polygon) == Approx(200 * um * um).epsilon(0.01));
+  }
+}
+
 TEST_CASE("the walls of a large lattice are sampled more coarsely") {
   const WallBorder tube = wall_border(with_tube(400));
   CHECK(tube.triangles.size() > 4000);
