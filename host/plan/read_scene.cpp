@@ -127,7 +127,8 @@ void require_passages(const scene::Scene& scene) {
   const auto refuse = [&](const std::string& problem, const std::string& remedy) {
     throw Error(Cause::bad_input, scene.place(pointer), problem, {remedy});
   };
-  if (passages.narrowest < least_passage) {
+  constexpr double measured = 0.99;  // to a per cent
+  if (passages.narrowest < measured * least_passage) {
     const double finer = std::ceil(narrowest_passage / passages.narrowest * scene.domain.nodes[0]);
     refuse("between walls at (" + scene::by_axes(passages.narrowest_at, 1e6, 5, " um", ", ") + ") a passage is " +
                number(passages.narrowest, 3) + " lattice spacings wide, and below " + number(least_passage) +

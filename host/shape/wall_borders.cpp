@@ -160,11 +160,6 @@ core::RegionPointer<D> closed_region(const scene::SceneFields& fields, const std
     const auto [least, most] = std::ranges::minmax(border.corners, {}, [k](const Vec<D>& corner) { return corner[k]; });
     if (domain.period(k) > 0) require_reach(fields, pointer, k, domain.period(k), least[k], most[k], unit);
     if (passes(border, domain, held)) held = k;
-    const double period = domain.period(k), off = rounding * period;
-    if (passes(border, domain, k) && (least[k] < -0.5 - off || most[k] > period - 0.5 + off))
-      fields.refuse(pointer, "it goes through the domain along " + axis_name(k) +
-                                 ", which is periodic, and on beyond its ends\ncut it at 0 um and at " +
-                                 number(period * unit * 1e6) + " um, with the same section at both");
     if (domain.period(k) > 0 && !passes(border, domain, k) && most[k] - least[k] > domain.period(k))
       fields.refuse(pointer,
                     "it is longer than the domain along " + axis_name(k) +
