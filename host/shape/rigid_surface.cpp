@@ -277,9 +277,10 @@ Place<3> back(const RigidSurface::Orientation& turn, const Place<3>& v) {
 }  // namespace
 
 bool encloses(const RigidBody<RigidSurface>& body, const Place<3>& point) {
+  constexpr double outside = 1e-9;  // 0 would be kept inside, too
   Place<3> seen = back(body.orientation, point);
   for (double& component : seen) component /= body.scale;
-  return !body.solid->keeps(seen, 0);
+  return !body.solid->keeps(seen, outside);
 }
 
 bool keep_apart(const RigidBody<RigidSurface>& a, const RigidBody<RigidSurface>& b, const Place<3>& shift, double gap) {

@@ -351,7 +351,7 @@ TEST_CASE("cells are packed into a ball, around small balls in it") {
     balls.push_back(middle + 4 * um * Vec<3>(i % 2 * 2 - 1, i / 2 % 2 * 2 - 1, i / 4 * 2 - 1));
   std::vector<rouleau::core::RegionPointer<3>> parts{ball_region<3>(middle, radius)};
   for (const Vec<3>& place : balls) parts.push_back(outside_of(ball_region<3>(place, small)));
-  Packed packed({48, 48, 48}, false, false);
+  Packed packed({48, 48, 48}, false, false, {Sphere{2.5 * um}});
   Domain& domain = packed.scene.domain;
   domain.within.emplace();
   domain.region_in_space = intersection(parts);
