@@ -134,7 +134,7 @@ class New_makes_a_model(Case):
 
 class New_scene(Case):
     TEMPLATES = {"demo": "two dimensions, 2 cells", "channel": "two dimensions, 14 cells", "suspension": "two dimensions, 17 cells",
-                 "capsule": "two dimensions, 1 cell,", "vessel": "two dimensions, ", "suspension-3d": "three dimensions, 14 cells",
+                 "capsule": "two dimensions, 1 cell,", "vessel": "two dimensions, 13 cells", "suspension-3d": "three dimensions, 14 cells",
                  "red-cell-3d": "three dimensions, 1 cell,", "doublet-3d": "three dimensions, 2 cells", "tube-3d": "three dimensions, no cells"}
 
     def test_of_each_template_plans_and_runs_as_it_is(self):
