@@ -180,12 +180,34 @@ inline constexpr double tube_error = 0.65;     ///< of the flow rate, over the s
 
 // ---- costs: seconds on one core, bytes ----
 namespace cost {
-inline constexpr double of_node[2][2] = {{0.85e-9, 1.5e-9}, {7e-9, 13e-9}};  ///< by dimension, f32 and f64 [time]
-/// s, of a membrane's node, and what is on top: of each surface that is near, by the square of the cutoff too [time].
+inline constexpr double of_node[2][2] = {{0.85e-9, 1.5e-9}, {5.5e-9, 11e-9}};  ///< by dimension, f32 and f64 [time]
+/// s, of a membrane's node, and what is on top [time].
 struct OfMembraneNode {
-  double alone, near = 0, near_by_square = 0, sharp_kernel = 0, slip = 0, slip_of_contrast = 0, semi_implicit = 0;
+  double alone;
+  double near = 0, near_by_square = 0;  ///< of each surface that is near, by the square of the cutoff too
+  double listed_by_square = 0;          ///< of each surface in a list that is made anew, by the square of its reach
+  double sharp_kernel = 0, slip = 0, slip_of_contrast = 0, semi_implicit = 0;
+  double active[2] = {};  ///< of each node of the lattice that feels it: force, velocity and viscosity, f32 and f64
+  double output = 0;      ///< of an output: gaps, aggregates, rows
 };
-inline constexpr OfMembraneNode of_membrane_node[2] = {{50e-9}, {100e-9, 100e-9, 1.8e-9, 55e-9, 55e-9, 110e-9, 60e-9}};
+inline constexpr OfMembraneNode of_membrane_node[2] = {{50e-9},
+                                                       {.alone = 200e-9,
+                                                        .near = 100e-9,
+                                                        .near_by_square = 3e-9,
+                                                        .listed_by_square = 70e-9,
+                                                        .sharp_kernel = 120e-9,
+                                                        .slip = 60e-9,
+                                                        .slip_of_contrast = 190e-9,
+                                                        .semi_implicit = 100e-9,
+                                                        .active = {6e-9, 16e-9},
+                                                        .output = 5e-6}};
+/// s, of a row in three dimensions that fills no whole number of registers [time].
+inline constexpr double of_ragged_row = 150e-9, bytes_of_register = 64;
+/// Lists of contacts last so many steps, and until a cell has travelled so many spacings [time].
+inline constexpr double lifetime_of_lists = 120, travel_of_lists = 0.5;
+/// A node of the lattice is in reach of a membrane within so many spacings, one more each with sharp6 and slip
+/// correction; along x up to a multiple of so many nodes [time].
+inline constexpr double reach_of_membranes = 2.5, nodes_at_once = 16;
 inline constexpr double bytes_of_node[2] = {400, 1200};  ///< of a membrane [memory]
 inline constexpr int velocities[2] = {9, 19};            ///< of the lattice
 }  // namespace cost

@@ -85,35 +85,86 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<scen
   return estimate;
 }
 
-/// Surfaces of other cells within the largest cutoff of a node where cells lie anywhere: those in the free volume,
-/// times what lies within the cutoff of one (Steiner's formula with its area and radius). A half at least, as of a
-/// doublet whose faces touch.
-double surfaces_near_a_node(const scene::Scene& scene, double cutoff) {
-  double room = scene.domain.content(), within = 0;
-  std::vector<double> enclosed, reached;
-  for (const scene::CellType& type : scene.cell_types) {
-    const double spacing = shape::node_spacing(type), radius = shape::shape_radius(type.shape);
-    const double area = std::sqrt(0.75) * spacing * spacing * shape::node_count(type);
-    enclosed.push_back(shape::enclosed_by(type));
-    reached.push_back(cutoff * (area + 4 * std::numbers::pi * cutoff * (radius + cutoff / 3)));
+/// A cell's surface, m2, and half of its longest axis.
+struct Body {
+  double enclosed, area, radius;
+
+  explicit Body(const scene::CellType& type)
+      : enclosed(shape::enclosed_by(type)), area(0), radius(shape::shape_radius(type.shape)) {
+    const double spacing = shape::node_spacing(type);
+    area = std::sqrt(0.75) * spacing * spacing * shape::node_count(type);
   }
-  for (const scene::CellPlacement& cell : scene.cells) {
-    room -= enclosed[cell.type];
-    within += reached[cell.type];
+  /// What lies outside within this distance, by Steiner's formula.
+  [[nodiscard]] double around(double distance) const {
+    return distance * (area + 4 * std::numbers::pi * distance * (radius + distance / 3));
   }
-  const auto cells = static_cast<double>(scene.cells.size());
-  return std::max(0.5, within * (cells - 1) / cells / std::max(room, 0.1 * scene.domain.content()));
+  /// Cross-section of all that lies within this distance, the mean over directions.
+  [[nodiscard]] double shadow(double distance) const {
+    return area / 4 + std::numbers::pi * distance * (2 * radius + distance);
+  }
+};
+
+template <class Function>
+double sum_over_cells(const scene::Scene& scene, Function function) {
+  std::vector<double> of_type;
+  for (const scene::CellType& type : scene.cell_types) of_type.push_back(function(Body(type)));
+  double sum = 0;
+  for (const scene::CellPlacement& cell : scene.cells) sum += of_type[cell.type];
+  return sum;
 }
 
-double cost_of_membrane_node(int dimension, const MembraneScheme& scheme) {
+/// Surfaces of other cells within the largest cutoff of a node where cells lie anywhere: those in the free volume,
+/// times what lies within the cutoff of one. A half at least, as of a doublet whose faces touch.
+double surfaces_near_a_node(const scene::Scene& scene, double cutoff) {
+  const double content = scene.domain.content(), cells = static_cast<double>(scene.cells.size());
+  const double room = content - sum_over_cells(scene, [](const Body& body) { return body.enclosed; });
+  const double within = sum_over_cells(scene, [&](const Body& body) { return body.around(cutoff); });
+  return std::max(0.5, within * (cells - 1) / cells / std::max(room, 0.1 * content));
+}
+
+/// Nodes of the lattice in reach of membranes, the inside of cells among them, where cells lie anywhere.
+double active_nodes(const scene::Scene& scene, double reach) {
+  const double spacing = scene::lattice_spacing(scene), distance = reach * spacing,
+               rounding = (cost::nodes_at_once - 1) * spacing;
+  const double reached = sum_over_cells(scene, [&](const Body& body) {
+    return body.enclosed + body.around(distance) + rounding * body.shadow(distance);
+  });
+  return scene::fluid_nodes(scene.domain) * -std::expm1(-reached / scene.domain.content());
+}
+
+/// Of the lists of contacts in a step, the mean over stages: lists last as long as the fastest cells let them.
+double renewals_in_a_step(const Plan& plan) {
+  double renewals = 0, steps = 0;
+  for (const scene::StageSetting& stage : plan.stages) {
+    const double speed = std::max(stage.fastest_wall(), fastest_driven_speed(stage, *plan.scene)),
+                 count = static_cast<double>(stage.max_steps);
+    renewals += count * std::min(1.0, std::max(1 / cost::lifetime_of_lists, speed / cost::travel_of_lists));
+    steps += count;
+  }
+  return renewals / std::max(steps, 1.0);
+}
+
+double cost_of_membrane_node(int dimension, scene::Precision precision, const MembraneScheme& scheme) {
   const cost::OfMembraneNode& of = cost::of_membrane_node[dimension - 2];
-  double all = of.alone;
-  // The triangles of a surface within the cutoff are as many as its square says.
-  if (scheme.cutoff > 0) all += scheme.near * (of.near + of.near_by_square * scheme.cutoff * scheme.cutoff);
+  double all = of.alone + scheme.active_nodes * of.active[precision == scene::Precision::f64 ? 1 : 0];
+  // The triangles of a surface within the cutoff are as many as its square says; lists reach a spacing farther.
+  if (scheme.cutoff > 0) {
+    const double listed = scheme.cutoff + 2 * cost::travel_of_lists;
+    all += scheme.near * (of.near + of.near_by_square * scheme.cutoff * scheme.cutoff +
+                          scheme.renewals * of.listed_by_square * listed * listed);
+  }
   if (scheme.sharp_kernel) all += of.sharp_kernel;
   if (scheme.slip_correction) all += scheme.viscosity_contrast ? of.slip_of_contrast : of.slip;
   if (scheme.semi_implicit) all += of.semi_implicit;
   return all;
+}
+
+/// Seconds of a step that rows take in three dimensions beside their nodes.
+double cost_of_rows(const scene::Scene& scene) {
+  const int along = scene.domain.nodes[0];
+  const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
+  if (scene.domain.dimension() == 2 || std::fmod(along * word, cost::bytes_of_register) == 0) return 0;
+  return scene::fluid_nodes(scene.domain) / along * cost::of_ragged_row;
 }
 
 }  // namespace
@@ -130,9 +181,13 @@ MembraneScheme membrane_scheme(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;
   if (scene.domain.dimension() == 2) return {};
   const double cutoff = plan.facts.stages.front().models->cutoff;
+  const bool sharp = kernel_named(scene.numerics.kernel).kind == core::KernelKind::sharp6;
+  const double reach = cost::reach_of_membranes + (sharp ? 1 : 0) + (scene.numerics.slip_correction ? 1 : 0);
   return {.cutoff = cutoff,
           .near = surfaces_near_a_node(scene, cutoff * scene::lattice_spacing(scene)),
-          .sharp_kernel = kernel_named(scene.numerics.kernel).kind == core::KernelKind::sharp6,
+          .renewals = renewals_in_a_step(plan),
+          .active_nodes = active_nodes(scene, reach) / std::max(membrane_nodes(scene), 1.0),
+          .sharp_kernel = sharp,
           .slip_correction = scene.numerics.slip_correction,
           .viscosity_contrast = plan.viscosity_contrast,
           .semi_implicit = plan.semi_implicit};
@@ -141,7 +196,7 @@ MembraneScheme membrane_scheme(const Plan& plan) {
 double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension,
                  const MembraneScheme& scheme) {
   const double of_node = cost::of_node[dimension - 2][precision == scene::Precision::f64 ? 1 : 0];
-  return lattice_nodes * of_node + membrane_nodes * cost_of_membrane_node(dimension, scheme);
+  return lattice_nodes * of_node + membrane_nodes * cost_of_membrane_node(dimension, precision, scheme);
 }
 
 double membrane_memory(const scene::Scene& scene) {
@@ -165,13 +220,15 @@ Estimate estimate(const Plan& plan) {
   const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
   Estimate estimate;
   for (const scene::StageSetting& stage : plan.stages) estimate.steps += static_cast<double>(stage.max_steps);
-  estimate.wall_s = estimate.steps * step_cost(scene::fluid_nodes(scene.domain), membrane, scene.numerics.precision,
-                                               dimension, membrane_scheme(plan));
+  estimate.wall_s = estimate.steps * (step_cost(scene::fluid_nodes(scene.domain), membrane, scene.numerics.precision,
+                                                dimension, membrane_scheme(plan)) +
+                                      cost_of_rows(scene));
   estimate.memory_bytes = nodes * word *
                               (velocities + (plan.has_cells ? dimension : 0) +
                                (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +
                           membrane_memory(scene);
   estimate.output = estimate_output(scene, plan.stages);
+  estimate.wall_s += estimate.output.outputs * membrane * cost::of_membrane_node[dimension - 2].output;
   return estimate;
 }
 

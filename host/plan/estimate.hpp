@@ -10,6 +10,8 @@ namespace rouleau::plan {
 struct MembraneScheme {
   double cutoff = 3.7;        ///< of the interactions between cells and within them, spacings; 0: there are none
   double near = 0.2;          ///< surfaces of other cells within the cutoff of a node, in the mean
+  double renewals = 0.01;     ///< of the lists of contacts, in a step
+  double active_nodes = 0;    ///< of the lattice, in reach of membranes, over the membranes' nodes
   bool sharp_kernel = false;  ///< of six points along each axis
   bool slip_correction = false;
   bool viscosity_contrast = false;  ///< with the slip correction: forces act beside the nodes
@@ -17,7 +19,7 @@ struct MembraneScheme {
 };
 MembraneScheme membrane_scheme(const Plan& plan);
 
-/// Seconds of one step on one core, as measured with AVX-512 (docs/performance.md, docs/three-dimensions.md); other
+/// Seconds of one step on one core, without outputs, as measured with AVX-512 (docs/results/plan-constants.md); other
 /// machines differ by their memory and vector width.
 double step_cost(double lattice_nodes, double membrane_nodes, scene::Precision precision, int dimension = 2,
                  const MembraneScheme& scheme = {});

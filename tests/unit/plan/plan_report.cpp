@@ -311,26 +311,72 @@ TEST_CASE("a plan says what walls and images add, and that a run takes hours") {
   CHECK(hours(report({"/stages/0/strain=1e5"})));
 }
 
+namespace {
+
+/// Seconds of a step in each node of its membranes, without outputs, of the crowded scene with these changes.
+/// A cutoff of 0: without a potential.
+double cost_of_crowd(double hematocrit, int cutoff_nm, const std::vector<std::string>& changes = {}) {
+  const std::string morse = R"({"between": ["rbc", "rbc"], "model": "morse", "parameters": {"depth": "2e-7 J/m2",
+    "zero_force_distance": "0.8 um", "cutoff": ")" +
+                            std::to_string(cutoff_nm) + R"( nm"}})";
+  std::vector<std::string> all = {"/cells/0/random/hematocrit=" + std::to_string(hematocrit),
+                                  "/interactions=[" + (cutoff_nm > 0 ? morse : "") + "]"};
+  all.insert(all.end(), changes.begin(), changes.end());
+  const scene::Scene scene = read_unpacked_scene(std::string(ROULEAU_SCENES) + "/suspension-3d.json", all).scene;
+  const Plan plan = make_plan(scene, plugins_of_reports());
+  const double nodes = membrane_nodes(scene);
+  return step_cost(scene::fluid_nodes(scene.domain), nodes, scene.numerics.precision, 3, membrane_scheme(plan)) / nodes;
+}
+/// What a potential of 2.2 um adds.
+double cost_of_potential(double hematocrit, const std::vector<std::string>& changes = {}) {
+  return cost_of_crowd(hematocrit, 2200, changes) - cost_of_crowd(hematocrit, 0, changes);
+}
+
+}  // namespace
+
 TEST_CASE("what a potential costs goes by the surfaces that are near a node") {
-  const auto cost = [](double hematocrit, bool attracts) {
-    const std::string morse = R"({"between": ["rbc", "rbc"], "model": "morse", "parameters": {"depth": "2e-7 J/m2",
-      "zero_force_distance": "0.8 um", "cutoff": "2.2 um"}})";
-    const scene::Scene scene =
-        read_unpacked_scene(std::string(ROULEAU_SCENES) + "/suspension-3d.json",
-                            {"/cells/0/random/hematocrit=" + std::to_string(hematocrit),
-                             "/interactions=[" + (attracts ? morse : "") + "]", "/numerics/coupling=explicit"})
-            .scene;
-    const Estimate whole = estimate(make_plan(scene, plugins_of_reports()));
-    return std::pair{whole.wall_s / whole.steps, membrane_nodes(scene)};
-  };
-  const auto of_potential = [&](double hematocrit) {
-    return (cost(hematocrit, true).first - cost(hematocrit, false).first) / cost(hematocrit, false).second;
-  };
   // Cells in the free volume: h/(1 - h) of them, less the one whose node it is.
-  const double dense = of_potential(0.25), sparse = of_potential(0.12);
+  const double dense = cost_of_potential(0.25), sparse = cost_of_potential(0.12);
   CHECK(dense / sparse == Approx(0.25 / 0.75 / (0.12 / 0.88)).epsilon(0.15));
-  // Measured at 25 %: contacts took 0.5 to 0.9 of all that membranes take besides (21 of 24 ms a step).
-  const double besides = cost(0.25, false).first / cost(0.25, false).second;
-  CHECK(dense > 0.5 * besides);
+  // Measured at 25 % (docs/results/plan-constants.md): contacts took as long as all the rest of a step, to a third.
+  const double besides = cost_of_crowd(0.25, 0);
+  CHECK(dense > 0.67 * besides);
   CHECK(dense < 1.5 * besides);
+  // A wider reach has more triangles as well as more surfaces.
+  CHECK(cost_of_crowd(0.25, 3000) - cost_of_crowd(0.25, 0) > 1.5 * cost_of_potential(0.25));
+}
+
+TEST_CASE("lists of contacts cost by how far cells travel in a step") {
+  const auto at_rate = [](const std::string& rate) {
+    return cost_of_potential(0.25, {"/stages/0/shear_rate=" + rate + " 1/s"});
+  };
+  const double slowest = at_rate("1"), slow = at_rate("50"), fast = at_rate("100"), faster = at_rate("150");
+  CHECK(faster - fast == Approx(fast - slow).epsilon(1e-6));
+  CHECK(slow > slowest);
+  CHECK(at_rate("2") == Approx(slowest));  // lists become old even where nothing moves
+}
+
+TEST_CASE("nodes of the lattice that feel a membrane cost more, in double precision above all") {
+  // In a crowd most nodes feel one already: twice as many cells have about half as many of them each.
+  const std::string f64 = R"(/numerics/precision="f64")";
+  const auto added_by_precision = [&](double hematocrit) {
+    return cost_of_crowd(hematocrit, 0, {f64}) - cost_of_crowd(hematocrit, 0);
+  };
+  const double of_few = added_by_precision(0.1), of_many = added_by_precision(0.2);
+  CHECK(of_few > 1.4 * of_many);
+  CHECK(of_few < 2.1 * of_many);
+  CHECK(of_many > 0.1 * cost_of_crowd(0.2, 0));
+  // Outputs cost as often as there are any.
+  const auto whole = [](const std::string& strain) {
+    const scene::Scene scene = read_unpacked_scene(std::string(ROULEAU_SCENES) + "/suspension-3d.json",
+                                                   {R"(/output/cells={"strain": )" + strain + "}"})
+                                   .scene;
+    const Estimate of = estimate(make_plan(scene, plugins_of_reports()));
+    return std::pair{of.wall_s, of.output.outputs};
+  };
+  const auto [seldom_s, seldom] = whole("0.5");
+  const auto [often_s, often] = whole("0.05");
+  const auto [more_s, more] = whole("0.02");
+  CHECK((often_s - seldom_s) / (often - seldom) == Approx((more_s - often_s) / (more - often)).epsilon(1e-6));
+  CHECK(often_s > seldom_s);
 }
