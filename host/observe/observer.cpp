@@ -144,7 +144,8 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
   const std::vector<double> gaps = smallest_gaps(around, domain);
   std::vector<CellMeasures> measures;
   for (const int c : cells.own_cells()) {
-    measures.push_back(measure(cells, c, domain, region.get(), marker_[c]));
+    const int marker = marker_.empty() ? 0 : marker_[c];  // an outline's first node, also where a run goes on
+    measures.push_back(measure(cells, c, domain, region.get(), marker));
     measures.back().gap = gaps[c];
   }
   measures = core::to_first(ranks, std::move(measures));
