@@ -176,7 +176,7 @@ inline constexpr double steady_amplitude = 0.5, steady_rate[2] = {0.55, 0.38};  
 inline constexpr double start_up = 1.2;        ///< times ((tau - 1/2)/rows)^2, between planes [flows]
 inline constexpr double start_up_in_duct = 5;  ///< the same with walls all round [flows]
 inline constexpr double duct_error = 0.26;     ///< of the flow rate, over rows^2 [flows]
-inline constexpr double tube_error = 0.65;     ///< of the flow rate, over the square of the radius [flows]
+inline constexpr double tube_error = 1;        ///< of the flow rate, over the square of the radius [flows]
 
 // ---- costs: seconds on one core, bytes ----
 namespace cost {

@@ -65,7 +65,7 @@ void add_tube(const LimitedStage& of, LimitList& limits) {
   if (!of.scene.domain.tube_radius) return;
   limits.above(
       "radius of the tube in lattice spacings", *of.scene.domain.tube_radius / of.stage.units.length, least_tube_radius,
-      "raise the resolution: the flow rate is off by up to 0.65 over the square of the radius", RemediedBy::resolution);
+      "raise the resolution: the flow rate is off by up to 1 over the square of the radius", RemediedBy::resolution);
 }
 
 void add_passages(const LimitedStage& of, LimitList& limits) {

@@ -60,13 +60,14 @@ TubeFlow tube_flow(double radius, double tau, bool interpolated = true) {
 
 TEST_CASE("flow through a tube is that of Hagen and Poiseuille to second order", "[space][flow]") {
   // By how much depends on how the circle meets the lattice: the order is that of the bound.
-  for (const double radius : {5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 24.0, 32.0}) {
+  for (const double radius : {5.0, 6.0, 8.0, 9.6, 10.0, 12.0, 15.5, 16.0, 24.0, 32.0}) {
     const TubeFlow flow = tube_flow(radius, 2);
     std::cout << "tube of " << radius << " spacings: flow rate off by " << flow.flow_rate << ", profile by "
               << flow.profile << "\n";
     CAPTURE(radius);
-    CHECK(std::abs(flow.flow_rate) < 0.65 / (radius * radius));
-    CHECK(flow.profile < 0.65 / (radius * radius));
+    const double least = std::round(radius) == radius ? 0.65 : 1;
+    CHECK(std::abs(flow.flow_rate) < least / (radius * radius));
+    CHECK(flow.profile < least / (radius * radius));
     CHECK(std::abs(flow.mass) < 1e-15);  // along a straight tube nothing is lost by interpolation
     CHECK(std::abs(flow.balance) < 1e-8);
   }

@@ -384,11 +384,11 @@ TEST_CASE("without cells a lattice of three dimensions resolves what lies betwee
     return read.scene.domain.nodes;
   };
   CHECK(of("\"y\": " + wall + ", \"z\": " + wall, 0.01) == std::vector<int>{4, 32, 32});
-  // A tube's radius has eight spacings at least, more where its flow rate asks for them (0.65 over the square of the
+  // A tube's radius has eight spacings at least, more where its flow rate asks for them (1 over the square of the
   // radius).
   const std::string round = R"("walls": {"tube": {"radius": "10 um"}})";
   CHECK(of(round, 0.05)[1] >= 16);
-  CHECK(of(round, 0.005)[1] >= 2 * std::sqrt(0.65 / 0.005));
+  CHECK(of(round, 0.005)[1] >= 2 * std::sqrt(1 / 0.005));
 }
 
 TEST_CASE("auto leaves a surface from a file its triangles") {
