@@ -24,8 +24,9 @@ TEST_CASE("the mean wall stress of a vessel carries what drives the flow through
   const auto lower = run.series_column("wall_stress_lower_Pa"), upper = run.series_column("wall_stress_upper_Pa");
   CHECK(lower.back() == Approx(2e4 * area / walls).epsilon(0.01));
   CHECK(upper.back() == lower.back());
-  CHECK(run.series_column("mean_velocity_m_per_s").back() * area ==
-        Approx(run.series_column("flow_rate_m2_per_s").back() * 40 * um).epsilon(1e-10));
+  // As exactly as the vessel's area is known (docs/walls.md).
+  const double flow = run.series_column("flow_rate_m2_per_s").back() * 40 * um;
+  CHECK(run.series_column("mean_velocity_m_per_s").back() * area / flow == Approx(1).epsilon(1e-5));
 }
 
 TEST_CASE("cells at random in a vessel stay inside, and their share of the flow is that of their motion") {
