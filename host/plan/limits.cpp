@@ -63,9 +63,9 @@ std::string micrometres(const scene::Vector& place) { return '(' + scene::by_axe
 
 void add_tube(const LimitedStage& of, LimitList& limits) {
   if (!of.scene.domain.tube_radius) return;
-  limits.above(
-      "radius of the tube in lattice spacings", *of.scene.domain.tube_radius / of.stage.units.length, least_tube_radius,
-      "raise the resolution: the flow rate is off by up to 1 over the square of the radius", RemediedBy::resolution);
+  limits.above("radius of the tube in lattice spacings", *of.scene.domain.tube_radius / of.stage.units.length,
+               least_tube_radius, "raise the resolution: the flow rate is off by up to 1 over the square of the radius",
+               RemediedBy::resolution);
 }
 
 void add_passages(const LimitedStage& of, LimitList& limits) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "core/domain/run_loop.hpp"
-#include "core/surface/padded_triangles.hpp"
 #include "core/geometry/triangle_distance.hpp"
+#include "core/surface/padded_triangles.hpp"
 
 namespace rouleau::core {
 

@@ -63,7 +63,8 @@ TEST_CASE("the wall of a tube acts along its radius") {
       exact += stiffness / 2 * (here * here - there * there) * 2 * std::numbers::pi * of_sphere * 2 * of_sphere / zones;
   }
   Surfaces s = sphere(16, of_sphere, {3, 9.5, 10.5});
-  WallContacts<3> tube(s, {{0, test::spring_potential(stiffness, rest, cutoff)}}, domain, tube_region(domain.size, radius));
+  WallContacts<3> tube(s, {{0, test::spring_potential(stiffness, rest, cutoff)}}, domain,
+                       tube_region(domain.size, radius));
   CHECK(tube.energy(s) == Approx(exact).epsilon(0.01));
   for (double& y : s.position[1]) y += 0.7;
   act(tube, s);
