@@ -105,7 +105,7 @@ std::string wall_grid(const WallBorder& walls, const std::string& group) {
            data_item(std::to_string(points) + columns, {"Float", 8}, group + points_name) +
            "</Geometry>\n    </Grid>\n";
   };
-  const std::string surface =
+  std::string surface =
       grid("\"Triangle\"", walls.triangles.size(), "/triangles", "XYZ", walls.points.size(), "/points");
   if (!surface.empty()) return surface;
   return grid("\"Polyline\" NodesPerElement=\"2\"", walls.segments.size(), "/segments", "XY", walls.corners.size(),

@@ -221,6 +221,7 @@ CellFreeLayer cell_free_layer_at(const std::vector<WallPoint<D>>& walls, const c
     }
   }
   std::vector<double> gaps;
+  gaps.reserve(walls.size());
   for (const WallPoint<D>& wall : walls) gaps.push_back(wall.half_width);
   if (!nodes.empty()) {
     const core::FacetTree<D> tree(nodes);

@@ -182,7 +182,7 @@ void add_wall_warnings(const scene::Domain& domain, std::vector<std::string>& wa
                        scene::by_axes(passages->apart_at, 1e6, 5, " um", ", ") +
                        "); they are computed, and mean values count them. Close them with an obstacle, or open a way");
   if (domain.has_shapes() && !domain.passages)
-    warnings.push_back(
+    warnings.emplace_back(
         "the lattice is too large to look for narrow or closed passages between its walls; try a coarser "
         "one first");
 }

@@ -8,10 +8,12 @@
 namespace rouleau::report {
 
 nlohmann::json wall_data(const files::FrameReader& reader) {
-  using Json = nlohmann::json;
   const files::WallBorder walls = reader.walls();
   if (walls.empty()) return nullptr;
-  Json data{{"corners_um", Json::array()}, {"first", walls.first}, {"segments", walls.segments}, {"surface", nullptr}};
+  nlohmann::json data{{"corners_um", nlohmann::json::array()},
+                      {"first", walls.first},
+                      {"segments", walls.segments},
+                      {"surface", nullptr}};
   for (const auto& corner : walls.corners) {
     for (const double metres : corner) data["corners_um"].push_back(std::round(metres * micro * 1000) / 1000);
   }

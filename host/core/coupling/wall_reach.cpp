@@ -10,11 +10,11 @@
 namespace rouleau::core {
 
 template <int D>
-WallReach<D>::WallReach(const Domain<D>& domain, const SolidNodes<D>& solid, const Region<D>& region, int points)
-    : domain_(domain), points_(points), around_(domain.block) {
+WallReach<D>::WallReach(const Domain<D>& domain, const SolidNodes<D>& solid, const Region<D>& region, int of_stencil)
+    : domain_(domain), points_(of_stencil), around_(domain.block) {
   std::size_t count = 1;
   for (int k = 0; k < D; ++k) {
-    around_.begin[k] -= points - 1, around_.end[k] += points - 1;
+    around_.begin[k] -= points_ - 1, around_.end[k] += points_ - 1;
     count *= static_cast<std::size_t>(around_.size(k));
   }
   struct Image {
