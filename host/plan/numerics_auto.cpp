@@ -95,9 +95,9 @@ void NumericsProblem::choose_density_factors(const Trial& best, NumericsChoice& 
 /// What flows that are developed from the start would save; empty: little.
 std::string NumericsProblem::gain_by_developed_start(const Trial& best) const {
   constexpr double little = 0.8;
-  if (std::none_of(flows_.begin(), flows_.end(), [](const Flow& flow) { return flow.lag > 0; })) return {};
-  for (const scene::Stage& stage : scene_.stages)
-    if (!scene::knows_developed_flow(stage, scene_)) return {};
+  if (std::none_of(flows_.begin(), flows_.end(), [](const Flow& flow) { return flow.lag > 0; }) ||
+      !scene::knows_developed_flows(scene_))
+    return {};
   NumericsProblem developed = *this;
   for (Flow& flow : developed.flows_) flow.lag = 0;
   const Trial other = developed.cheapest();

@@ -95,22 +95,21 @@ bool encloses(const core::Surfaces& surfaces, int cell, const core::Vec<3>& plac
 template <int D>
 class PlacementChecker {
  public:
-  /// `numbers`: which of the scene's cells these are; empty: all of them.
-  PlacementChecker(const scene::Scene& scene, const core::Cells<D>& cells, double spacing,
-                   std::span<const int> numbers = {})
+  PlacementChecker(const scene::Scene& scene, double spacing)
       : scene_(scene),
-        cells_(cells),
         spacing_(spacing),
-        numbers_(numbers),
         domain_(scene::lattice_domain<D>(scene)),
-        region_(scene::fluid_region<D>(scene)),
-        boxes_(core::boxes_of<D>(cells)) {
+        region_(scene::fluid_region<D>(scene)) {
     if (scene.domain.has_shapes()) pieces_ = core::pieces_outside<D>(*region_, domain_);
   }
 
-  void check() const {
-    for (int c = 0; c < cells_.cell_count(); ++c) check_fits(c);
-    check_apart(cells_);
+  /// `numbers`: which of the scene's cells these are; empty: all of them.
+  void check(const core::Cells<D>& cells, std::span<const int> numbers = {}) {
+    cells_ = &cells;
+    numbers_ = numbers;
+    boxes_ = core::boxes_of<D>(cells);
+    for (int c = 0; c < cells.cell_count(); ++c) check_fits(c);
+    check_apart(cells);
   }
 
  private:
@@ -146,7 +145,7 @@ class PlacementChecker {
   }
 
   void check_within_region(int cell) const {
-    const core::NearestToBorder<D> nearest = core::nearest_to_border(cells_, cells_.cells[cell], *region_);
+    const core::NearestToBorder<D> nearest = core::nearest_to_border(*cells_, cells_->cells[cell], *region_);
     if (!(nearest.distance > 0) && scene_.domain.tube_radius) {
       refuse(cell, " sticks through the wall of the tube by " + micrometres(-nearest.distance) +
                        "; move it towards the axis, or make the tube wider.");
@@ -163,7 +162,7 @@ class PlacementChecker {
         const double away = 0.5 * (boxes_[cell].least[k] + boxes_[cell].most[k]) - place[k];
         place[k] += domain_.period(k) * std::round(away / domain_.period(k));
       }
-      if (encloses(cells_, cell, place))
+      if (encloses(*cells_, cell, place))
         refuse(cell, " lies around a piece of wall at " + name(piece) + "; move it away from the wall.");
     }
   }
@@ -237,12 +236,13 @@ class PlacementChecker {
   }
 
   const scene::Scene& scene_;
-  const core::Cells<D>& cells_;
   double spacing_;
-  std::span<const int> numbers_;
   core::Domain<D> domain_;
   core::RegionPointer<D> region_;     ///< of a tube, or between walls of any shape
   std::vector<core::Vec<D>> pieces_;  ///< a node in each piece of these
+  // What is being checked.
+  const core::Cells<D>* cells_ = nullptr;
+  std::span<const int> numbers_;
   std::vector<core::BoundingBox<D>> boxes_;
 };
 
@@ -298,6 +298,7 @@ void try_in_strips(const scene::Scene& scene, double spacing, std::size_t of_str
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),
             [&](int a, int b) { return std::pair(height[a], a) < std::pair(height[b], b); });
+  PlacementChecker<2> checker(scene, spacing);
   for (std::size_t first = 0; first < order.size(); first += of_strip) {
     const std::size_t end = std::min(first + of_strip, order.size());
     const double top = height[order[end - 1]] + 2 * reach;
@@ -308,7 +309,7 @@ void try_in_strips(const scene::Scene& scene, double spacing, std::size_t of_str
     std::sort(cells.begin(), cells.end());
     core::Membranes membranes = none;
     for (const int c : cells) add_placed(membranes, scene.cells[c], spacing);
-    PlacementChecker<2>(scene, membranes, spacing, cells).check();
+    checker.check(membranes, cells);
   }
 }
 
@@ -319,7 +320,7 @@ core::Cells<D> make_cells(const scene::Scene& scene, double spacing) {
   require_room(scene);
   require_distance(scene);
   core::Cells<D> cells = all_cells<D>(scene, spacing);
-  PlacementChecker<D>(scene, cells, spacing).check();
+  PlacementChecker<D>(scene, spacing).check(cells);
   return cells;
 }
 template core::Membranes make_cells<2>(const scene::Scene&, double);

@@ -100,10 +100,7 @@ std::string to_text(const Plan& plan, const PlanReport& report) {
   out << (scene.title.empty() ? "untitled scene" : scene.title) << "\n";
   for (const std::string& warning : report.warnings) out << "  warning: " << warning << "\n";
 
-  if (plan.numerics_choice) {
-    const auto known = [&](const scene::Stage& stage) { return scene::knows_developed_flow(stage, scene); };
-    write_choice(out, *plan.numerics_choice, std::all_of(scene.stages.begin(), scene.stages.end(), known));
-  }
+  if (plan.numerics_choice) write_choice(out, *plan.numerics_choice, scene::knows_developed_flows(scene));
   const auto whole = [](const Conversion& row) { return row.quantity + (row.of.empty() ? "" : " (" + row.of + ")"); };
   std::size_t stage = 5, quantity = 8;
   for (const Conversion& row : report.conversions) {

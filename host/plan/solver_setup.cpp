@@ -10,13 +10,33 @@
 namespace rouleau::plan {
 
 template <int D>
-core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
+LatticeWalls<D> lattice_walls(const scene::Scene& scene) {
+  LatticeWalls<D> walls{.region = scene::fluid_region<D>(scene)};
+  if (!walls.region) return walls;
+  const core::Domain<D> domain = scene::lattice_domain<D>(scene);
+  walls.solid = std::make_shared<const core::SolidNodes<D>>(domain.size, walls.region);
+  if (scene.domain.tube_radius) {
+    walls.area = 2 * std::numbers::pi * (*scene.domain.tube_radius / scene::lattice_spacing(scene)) * domain.size[0];
+  } else {
+    const auto open = core::intersection<D>({walls.region, core::between_walls<D>(domain)});
+    walls.area = core::size_of<D>(core::border_of_region(*open, domain));
+  }
+  return walls;
+}
+template LatticeWalls<2> lattice_walls(const scene::Scene&);
+template LatticeWalls<3> lattice_walls(const scene::Scene&);
+
+template <int D>
+core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index, const LatticeWalls<D>& walls) {
   const scene::Scene& scene = *plan.scene;
   const scene::StageSetting& stage = plan.stages[index];
   const StageModels& made = *plan.made[index];
 
   core::BasicSolverSetup<D> setup{
       .domain = scene::lattice_domain<D>(scene),
+      .region = walls.region,
+      .solid = walls.solid,
+      .wall_area = walls.area,
       .tau = stage.tau,
       .layers = scene::lattice_layers(scene),
       .inertia = scene.fluid.inertia,
@@ -39,21 +59,15 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
       .strain_per_step = plan.facts.stages[index].shear_rate * stage.units.time,
       .time_step = stage.stage->density_factor,  // proportional to it
       .tension_unit = stage.units.unit(units::dimension::tension)};
-  setup.region = scene::fluid_region<D>(scene);
-  if (setup.region) {
+  if (walls.region) {
     const double spacing = scene::lattice_spacing(scene);
-    setup.solid = std::make_shared<const core::SolidNodes<D>>(setup.domain.size, setup.region);
     // The mean over the true section, when the solver goes by that over its nodes.
     setup.mean_velocity *=
-        scene.domain.content() / std::pow(spacing, D) / static_cast<double>(setup.solid->fluid_count());
+        scene.domain.content() / std::pow(spacing, D) / static_cast<double>(walls.solid->fluid_count());
     setup.width = scene.domain.region_width / spacing;
     if (scene.domain.tube_radius) {
       const double radius = *scene.domain.tube_radius / spacing;
-      setup.wall_area = 2 * std::numbers::pi * radius * setup.domain.size[0];
       setup.section_flow = [radius](double y, double z, double force) { return core::tube_flow(radius, force, y, z); };
-    } else {
-      const auto open = core::intersection<D>({setup.region, core::between_walls<D>(setup.domain)});
-      setup.wall_area = core::size_of<D>(core::border_of_region(*open, setup.domain));
     }
   }
   if (!plan.has_cells) return setup;
@@ -77,7 +91,7 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index) {
   return setup;
 }
 
-template core::BasicSolverSetup<2> make_solver_setup(const Plan&, int);
-template core::BasicSolverSetup<3> make_solver_setup(const Plan&, int);
+template core::BasicSolverSetup<2> make_solver_setup(const Plan&, int, const LatticeWalls<2>&);
+template core::BasicSolverSetup<3> make_solver_setup(const Plan&, int, const LatticeWalls<3>&);
 
 }  // namespace rouleau::plan

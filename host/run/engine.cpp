@@ -4,7 +4,6 @@
 
 #include "plan/placed_cells.hpp"
 #include "plan/ranks/blocks.hpp"
-#include "plan/solver_setup.hpp"
 #include "scene/lattice.hpp"
 
 namespace rouleau::run {
@@ -21,7 +20,7 @@ auto Engine<D>::boxes_of_all() -> Boxes {
 
 template <int D>
 auto Engine<D>::prepare(int stage, const Boxes& boxes, std::vector<int> owner) const -> Start {
-  Start start{plan::make_solver_setup<D>(plan_, stage), {}, {}};
+  Start start{plan::make_solver_setup<D>(plan_, stage, walls_), {}, {}};
   start.setup.domain = domain();
   if (ranks_.several() && plan_.has_cells)
     start.part.emplace(ranks_, boxes, core::ghost_reach(start.setup), std::move(owner));

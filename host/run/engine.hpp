@@ -8,7 +8,7 @@
 #include "checkpoint.hpp"
 #include "core/domain/decomposition.hpp"
 #include "core/solver/any_solver.hpp"
-#include "plan/plan.hpp"
+#include "plan/solver_setup.hpp"
 
 namespace rouleau::run {
 
@@ -26,7 +26,7 @@ class Engine {
 
   /// No cells yet, and no solver. The plan outlives it. `owner`: of the cells when a stage begins (core::GhostCells).
   explicit Engine(const plan::Plan& plan, const core::Ranks<D>& ranks = {}, std::vector<int> owner = {})
-      : plan_(plan), ranks_(ranks), owner_(std::move(owner)) {}
+      : plan_(plan), walls_(plan::lattice_walls<D>(*plan.scene)), ranks_(ranks), owner_(std::move(owner)) {}
 
   /// The cells as the scene places them, of which the observer takes note, for the first stage.
   [[nodiscard]] Start place_cells(observe::Observer& observer);
@@ -59,6 +59,7 @@ class Engine {
   [[nodiscard]] core::Domain<D> domain() const;
 
   const plan::Plan& plan_;
+  plan::LatticeWalls<D> walls_;  ///< of all stages
   core::Ranks<D> ranks_;
   std::vector<int> owner_;
   std::unique_ptr<const core::Decomposition<D>> blocks_;  ///< that ranks_ has, once they have been cut again

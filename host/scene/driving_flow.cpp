@@ -101,6 +101,11 @@ bool knows_developed_flow(const Stage& stage, const Scene& scene) {
   return !scene.domain.is_duct() || (!stage.oscillates() && scene.fluid.layers.empty());
 }
 
+bool knows_developed_flows(const Scene& scene) {
+  return std::all_of(scene.stages.begin(), scene.stages.end(),
+                     [&](const Stage& stage) { return knows_developed_flow(stage, scene); });
+}
+
 double start_up_strain(const Stage& stage, const Scene& scene) {
   if (stage.start == WallStart::developed || !has_walls(scene.domain)) return 0;
   const double height = wall_distance(scene.domain), nu = viscosity_range(scene.fluid).least / scene.fluid.density;

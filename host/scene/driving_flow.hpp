@@ -14,6 +14,8 @@ Vector driving_force(const Stage& stage, const Scene& scene);
 
 /// Whether the flow that a stage settles to without cells is known, so that `"start": "developed"` can begin with it.
 bool knows_developed_flow(const Stage& stage, const Scene& scene);
+/// The same of all its stages.
+bool knows_developed_flows(const Scene& scene);
 
 /// Whether walls hold the fluid, across y or z.
 bool has_walls(const Domain& domain);

@@ -57,28 +57,6 @@ RegionPointer<3> round_about(int axis, const Vec<2>& center, double radius, doub
   return core::extruded(core::ball_region<2>(center, radius), axis, from, to);
 }
 
-/// What comes again along periodic axes and is symmetric about its middle, from where on it is nowhere nearer along any
-/// axis: the nearest image is the one with the nearest middle.
-template <int D>
-class Repeated final : public core::Region<D> {
- public:
-  Repeated(RegionPointer<D> region, const Vec<D>& middle, const core::Domain<D>& domain)
-      : region_(std::move(region)), middle_(middle), domain_(domain) {}
-  [[nodiscard]] core::Distance<D> distance(const Vec<D>& place) const override {
-    Vec<D> near = place;
-    for (int k = 0; k < D; ++k) {
-      const double period = domain_.period(k);
-      if (period > 0) near[k] -= period * std::round((place[k] - middle_[k]) / period);
-    }
-    return region_->distance(near);
-  }
-
- private:
-  RegionPointer<D> region_;
-  Vec<D> middle_;
-  core::Domain<D> domain_;
-};
-
 /// Regions of shapes, each with its images along periodic axes.
 template <int D>
 class Builder {
@@ -118,7 +96,7 @@ class Builder {
       if (around.periodic[k]) require_reach(fields_, pointer, k, period, from[k], to[k], unit_);
     }
     if (std::ranges::none_of(around.periodic, [](bool periodic) { return periodic; })) return region;
-    return std::make_shared<Repeated<D>>(std::move(region), (from + to) / 2, around);
+    return core::repeated<D>(std::move(region), (from + to) / 2, around);
   }
 
   RegionPointer<D> region(const std::string& pointer, const WallShape::Box& box) const {

@@ -13,6 +13,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from scene_parts import changed  # noqa: E402
+
 PROGRAM, DUCT = Path(sys.argv[1]).resolve(), json.loads(Path(sys.argv[2]).read_text())
 WITHOUT_WHOLE_RUNS = "--no-whole-runs" in sys.argv  # where the program is ten times slower
 WALLS = {"lower": {"wall": {}}, "upper": {"wall": {}}}
@@ -58,17 +61,6 @@ TUBE = {
                {"name": "on", "pressure_gradient": "4e6 Pa/m", "duration": "1 ms"}],
     "output": {"cells": {"seconds": "0.1 ms"}, "fields": {"seconds": "1 ms", "quantities": ["velocity", "viscosity"]}},
 }
-
-
-def changed(scene, **pointers):
-    scene = copy.deepcopy(scene)
-    for pointer, value in pointers.items():
-        *path, last = pointer.split("__")
-        place = scene
-        for key in path:
-            place = place[int(key) if key.isdigit() else key]
-        place[int(last) if isinstance(place, list) else last] = value
-    return scene
 
 
 class Case(unittest.TestCase):

@@ -4,18 +4,17 @@ what is refused, and that no broken input ends the program without a word.
 
 usage: check_walls.py ROULEAU [--no-whole-runs] [--mutants N [SEED]]
 """
-import copy
 import csv
 import json
-import math
 import random
-import struct
 import subprocess
 import sys
 import tempfile
 import unittest
-import zlib
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from scene_parts import changed, png, tube_stl  # noqa: E402
 
 PROGRAM = Path(sys.argv[1]).resolve()
 WITHOUT_WHOLE_RUNS = "--no-whole-runs" in sys.argv  # where the program is ten times slower
@@ -43,39 +42,7 @@ TUBE = {**PLANE, "domain": {"size": ["1 um", "5.5 um", "5.5 um"], "nodes": [4, 2
 MESH = {"mesh": {"file": "tube.stl", "unit": "1 um", "at": ["0 um", "2.75 um", "2.75 um"]}}
 
 
-def png(rows):
-    """Grey values from 0 to 255, the lowest row first, as a PNG file."""
-    def chunk(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-    packed = zlib.compress(b"".join(b"\0" + bytes(row) for row in reversed(rows)))
-    head = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 0, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", packed) + chunk(b"IEND", b"")
-
-
-def tube_stl(radius, length, around=96, lids=True):
-    """A tube along x in binary STL."""
-    ring = [(radius * math.cos(2 * math.pi * i / around), radius * math.sin(2 * math.pi * i / around)) for i in range(around)]
-    triangles = []
-    for (y, z), (v, w) in zip(ring, ring[1:] + ring[:1]):
-        triangles += [((0, y, z), (0, v, w), (length, y, z)), ((0, v, w), (length, v, w), (length, y, z))]
-        if lids:
-            triangles += [((length, 0, 0), (length, y, z), (length, v, w)), ((0, 0, 0), (0, v, w), (0, y, z))]
-    faces = b"".join(struct.pack("<12fH", 0, 0, 0, *a, *b, *c, 0) for a, b, c in triangles)
-    return bytes(80) + struct.pack("<I", len(triangles)) + faces
-
-
 BAND = png([[255 if 8 <= row < 32 else 0] * 8 for row in range(40)])
-
-
-def changed(scene, **pointers):
-    scene = copy.deepcopy(scene)
-    for pointer, value in pointers.items():
-        *path, last = pointer.split("__")
-        place = scene
-        for key in path:
-            place = place[int(key) if key.isdigit() else key]
-        place[int(last) if isinstance(place, list) else last] = value
-    return scene
 
 
 class Walls(unittest.TestCase):

@@ -9,23 +9,21 @@ usage: check_code.py SOURCE BUILD
 
 import ast
 import json
-import math
 import pathlib
 import re
-import struct
 import subprocess
 import sys
 import tempfile
 import textwrap
 import unittest
-import zlib
 
 sys.dont_write_bytecode = True
 SOURCE, BUILD = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
-sys.path[:0] = [str(SOURCE / "scripts/documentation"), str(pathlib.Path(__file__).parent)]
+sys.path[:0] = [str(SOURCE / "scripts/documentation"), str(SOURCE / "tests"), str(pathlib.Path(__file__).parent)]
 
 from page_commands import PROGRAMS  # noqa: E402
 from pages import PAGES  # noqa: E402
+from scene_parts import png, tube_stl  # noqa: E402
 
 PROGRAM = BUILD / "bin/rouleau"
 SHIPPED = SOURCE / "plugins"
@@ -185,32 +183,11 @@ def domain_of_a_tube(test, block):
     test.plan(scene)
 
 
-def png(rows):
-    """A PNG picture, grey, of rows from above."""
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    head = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 0, 0, 0, 0)
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) +
-            chunk(b"IDAT", zlib.compress(b"".join(b"\0" + bytes(row) for row in rows))) + chunk(b"IEND", b""))
-
-
-def stl_of_a_tube(length, radius, sides=48):
-    """Its wall, seen from outside counter-clockwise, without lids."""
-    angles = [2 * math.pi * i / sides for i in range(sides + 1)]
-    ring = [(radius * math.cos(a), radius * math.sin(a)) for a in angles[:-1]] + [(radius, 0.0)]
-    text = "solid tube\n"
-    for (y, z), (v, w) in zip(ring, ring[1:]):
-        for triangle in (((0, y, z), (0, v, w), (length, v, w)), ((0, y, z), (length, v, w), (length, y, z))):
-            corners = "".join("vertex {} {} {}\n".format(*corner) for corner in triangle)
-            text += f"facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n"
-    return text + "endsolid\n"
-
-
 def walls_of_any_shape(test, block):
     """With the files that the page speaks of."""
     white = [[255 if 30 <= y < 130 else 0] * 400 for y in range(160)]
     (test.folder / "chip.png").write_bytes(png(white))
-    (test.folder / "vessel.stl").write_text(stl_of_a_tube(100, 15))
+    (test.folder / "vessel.stl").write_bytes(tube_stl(15, 100, lids=False))
     rest = {"rouleau": 1, "fluid": {"density": "1 g/cm3", "viscosity": "1.2 cP"}, "numerics": {"density_factor": 100},
             "stages": [{"name": "flow", "mean_velocity": "1 mm/s", "duration": "20 ms"}]}
     test.plan(rest | json.loads("{" + block.text.strip().rstrip(",") + "}"))

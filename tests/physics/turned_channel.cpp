@@ -29,21 +29,26 @@ struct TurnedFlow {
   double balance;  ///< dissipation over the power of the force, less 1
 };
 
-/// A tube along the diagonal of a periodic box's x and y, in the middle of its z.
+/// A tube along the diagonal of a periodic box's x and y, in the middle of its z, with its images.
 class DiagonalTube final : public Region<3> {
  public:
   DiagonalTube(const rouleau::core::Domain<3>& domain, double radius)
       : middle_((Vec<3>(domain.size[0], domain.size[1], domain.size[2]) - Vec<3>::Ones()) / 2),
         along_(Vec<3>(domain.size[0], domain.size[1], 0).normalized()),
+        period_(domain.size[0], 0, 0),
         radius_(radius) {}
   [[nodiscard]] Distance<3> distance(const Vec<3>& place) const override {
-    const Vec<3> from = place - middle_, across = from - from.dot(along_) * along_;
-    const double away = across.norm();
-    return {radius_ - away, away > 0 ? Vec<3>(-across / away) : Vec<3>(Vec<3>::Unit(2))};
+    Vec<3> nearest = Vec<3>::Constant(INFINITY);  // of its images across
+    for (const int image : {-1, 0, 1}) {
+      const Vec<3> from = place - middle_ - image * period_, across = from - from.dot(along_) * along_;
+      if (across.norm() < nearest.norm()) nearest = across;
+    }
+    const double away = nearest.norm();
+    return {radius_ - away, away > 0 ? Vec<3>(-nearest / away) : Vec<3>(Vec<3>::Unit(2))};
   }
 
  private:
-  Vec<3> middle_, along_;
+  Vec<3> middle_, along_, period_;
   double radius_;
 };
 
@@ -90,7 +95,7 @@ TurnedFlow along_channel(int nx, int ny, double half_height) {
 }
 TurnedFlow along_tube(int nx, int ny, double radius) {
   const rouleau::core::Domain<3> domain({nx, ny, static_cast<int>(std::ceil(2 * radius)) + 2}, {true, true, true});
-  return turned_flow<D3Q19>(domain, with_images<3>(std::make_shared<DiagonalTube>(domain, radius), domain), radius);
+  return turned_flow<D3Q19>(domain, std::make_shared<DiagonalTube>(domain, radius), radius);
 }
 
 }  // namespace

@@ -39,9 +39,8 @@ void WallContacts<D>::find(const ContactLaw& law, int cell, int wall, const Cell
   contacts.values.clear();
   const CellRange& range = cells.cells[cell];
   for (int i = range.first; i < range.end(); ++i) {
-    const auto nearest = walls_[wall](vector_at<D>(cells.position, i));
-    if (!nearest || !(nearest->value <= law.cutoff())) continue;
-    const auto& [distance, away] = *nearest;
+    const auto [distance, away] = walls_[wall](vector_at<D>(cells.position, i));
+    if (!(distance <= law.cutoff())) continue;
     contacts.node.push_back(i);
     contacts.away.push_back(away);
     contacts.values.distance.push_back(std::max(distance, least_distance));

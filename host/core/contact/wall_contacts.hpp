@@ -1,6 +1,7 @@
 // Forces between cells and walls: potentials integrated over the part of a membrane that is near a wall.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,17 +19,17 @@
 
 namespace rouleau::core {
 
-/// A wall as a potential sees it: how far a place is from it, and which way leads away from it; none: for certain too
-/// far to matter.
+/// A wall as a potential sees it: how far a place is from it, infinitely where it is for certain too far to matter, and
+/// which way leads away from it.
 template <int D>
 struct Wall {
   int axis;                      ///< that a plane lies across; 0: what closes a region
   double place = 0, inward = 0;  ///< of a plane: along its axis; 1 where the fluid lies above it, -1 below
   std::shared_ptr<const NearBorder<D>> border = {};
 
-  [[nodiscard]] std::optional<Distance<D>> operator()(const Vec<D>& at) const {
-    if (axis == 0) return border->at(at);
-    return Distance<D>{inward * (at[axis] - place), inward * Vec<D>::Unit(axis)};
+  [[nodiscard]] Distance<D> operator()(const Vec<D>& at) const {
+    if (axis == 0) return border->at(at).value_or(Distance<D>{INFINITY, Vec<D>::Zero()});
+    return {inward * (at[axis] - place), inward * Vec<D>::Unit(axis)};
   }
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace rouleau::core {
@@ -83,31 +82,22 @@ class Magnified final : public Region<D> {
 };
 
 template <int D>
-class WithImages final : public Region<D> {
+class Repeated final : public Region<D> {
  public:
-  WithImages(RegionPointer<D> region, const Domain<D>& domain) : region_(std::move(region)), domain_(domain) {}
+  Repeated(RegionPointer<D> region, const Vec<D>& middle, const Domain<D>& domain)
+      : region_(std::move(region)), middle_(middle), domain_(domain) {}
   [[nodiscard]] Distance<D> distance(const Vec<D>& place) const override {
-    Vec<D> first = place;
-    std::array<int, D> images;
-    int count = 1;
+    Vec<D> near = place;
     for (int k = 0; k < D; ++k) {
       const double period = domain_.period(k);
-      images[k] = period > 0 ? 3 : 1;
-      if (period > 0) first[k] -= period * (std::floor(place[k] / period) + 1);
-      count *= images[k];
+      if (period > 0) near[k] -= period * std::round((place[k] - middle_[k]) / period);
     }
-    Distance<D> nearest{-std::numeric_limits<double>::infinity(), Vec<D>::Zero()};
-    for (int i = 0; i < count; ++i) {
-      Vec<D> image = first;
-      for (int k = 0, rest = i; k < D; rest /= images[k++]) image[k] += rest % images[k] * domain_.period(k);
-      const Distance<D> of_image = region_->distance(image);
-      if (of_image.value > nearest.value) nearest = of_image;
-    }
-    return nearest;
+    return region_->distance(near);
   }
 
  private:
   RegionPointer<D> region_;
+  Vec<D> middle_;
   Domain<D> domain_;
 };
 
@@ -136,8 +126,8 @@ RegionPointer<D> magnified(RegionPointer<D> region, double scale, const Vec<D>& 
 }
 
 template <int D>
-RegionPointer<D> with_images(RegionPointer<D> region, const Domain<D>& domain) {
-  return std::make_shared<WithImages<D>>(std::move(region), domain);
+RegionPointer<D> repeated(RegionPointer<D> region, const Vec<D>& middle, const Domain<D>& domain) {
+  return std::make_shared<Repeated<D>>(std::move(region), middle, domain);
 }
 
 template class Region<2>;
@@ -150,7 +140,7 @@ template RegionPointer<2> union_of(std::vector<RegionPointer<2>>);
 template RegionPointer<3> union_of(std::vector<RegionPointer<3>>);
 template RegionPointer<2> magnified(RegionPointer<2>, double, const Vec<2>&);
 template RegionPointer<3> magnified(RegionPointer<3>, double, const Vec<3>&);
-template RegionPointer<2> with_images(RegionPointer<2>, const Domain<2>&);
-template RegionPointer<3> with_images(RegionPointer<3>, const Domain<3>&);
+template RegionPointer<2> repeated(RegionPointer<2>, const Vec<2>&, const Domain<2>&);
+template RegionPointer<3> repeated(RegionPointer<3>, const Vec<3>&, const Domain<3>&);
 
 }  // namespace rouleau::core

@@ -42,9 +42,9 @@ RegionPointer<D> union_of(std::vector<RegionPointer<D>> regions);
 /// A region `scale` times as large, its origin moved by `shift` after that.
 template <int D>
 RegionPointer<D> magnified(RegionPointer<D> region, double scale, const Vec<D>& shift);
-/// A region with its images along the periodic axes of a domain. It must not reach further than one period from the
-/// domain.
+/// A region with its images along the periodic axes of a domain. It is symmetric about its middle, from where on it is
+/// nowhere nearer along any axis: the nearest image is the one with the nearest middle.
 template <int D>
-RegionPointer<D> with_images(RegionPointer<D> region, const Domain<D>& domain);
+RegionPointer<D> repeated(RegionPointer<D> region, const Vec<D>& middle, const Domain<D>& domain);
 
 }  // namespace rouleau::core

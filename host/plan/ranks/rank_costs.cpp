@@ -156,7 +156,7 @@ template <int D>
 void add_cells(const Plan& plan, const core::Decomposition<D>& blocks, std::vector<RankCost>& ranks) {
   using Ghosts = core::GhostCells<D>;
   const core::Domain<D> domain = blocks.domain(0);
-  const core::GhostReach reach = core::ghost_reach(make_solver_setup<D>(plan, 0));
+  const core::GhostReach reach = core::ghost_reach(make_solver_setup<D>(plan, 0, {}));  // walls have no part in it
   constexpr double word = sizeof(double), of_node = D * word;
   std::vector<core::BoundingBox<D>> boxes;
   std::vector<int> owner, nodes;

@@ -30,8 +30,9 @@ scene::Scene with_disc(double x, double y, int nodes) {
   core::Domain<2> box;  // the region is in m; so are its periods
   box.size = {60, 40};
   box.periodic = {true, false};
-  const core::RegionPointer<2> disc = core::magnified<2>(
-      core::with_images<2>(core::ball_region<2>({x - 0.5, y - 0.5}, 10), box), um, core::Vec<2>::Constant(0.5 * um));
+  const core::RegionPointer<2> disc =
+      core::magnified<2>(core::repeated<2>(core::ball_region<2>({x - 0.5, y - 0.5}, 10), {x - 0.5, y - 0.5}, box), um,
+                         core::Vec<2>::Constant(0.5 * um));
   scene.domain.region_in_plane = core::outside_of<2>(disc);
   return scene;
 }

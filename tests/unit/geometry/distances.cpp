@@ -154,7 +154,7 @@ TEST_CASE("A cylinder's distance is exact inside, outside, beyond its ends and a
 TEST_CASE("A region and its images come again after every period", "[distances]") {
   std::mt19937 random = rouleau::test::generator(49);
   const Domain<2> domain({10, 8}, {true, false});
-  const auto region = with_images(ball_region<2>({9.5, 4}, 2), domain);
+  const auto region = repeated<2>(ball_region<2>({9.5, 4}, 2), {9.5, 4}, domain);
   CHECK(region->distance({0, 4}).value == Approx(1.5));
   for (int i = 0; i < 100; ++i) {
     const Vec<2> place = random_place<2>(random, 12);

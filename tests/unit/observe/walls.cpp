@@ -117,7 +117,7 @@ TEST_CASE("the layer without cells at walls of any shape is the mean distance to
   CHECK(off.lower == Approx(exact).epsilon(5e-3));
   // The same through a periodic border.
   const Domain<2> around({80, 80}, {true, true});
-  const auto image = with_images(ball_region<2>({0, 39.5}, 30), around);
+  const auto image = repeated<2>(ball_region<2>({0, 39.5}, 30), {0, 39.5}, around);
   const CellFreeLayer cut = cell_free_layer_at(wall_points<2>(image, around), discs(15, {{167, 39.5}}), around);
   CHECK(cut.lower == Approx(exact).epsilon(5e-3));
   // A ball in a ball.
