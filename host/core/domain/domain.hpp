@@ -62,7 +62,8 @@ std::array<int, D - 1> row_of(const Box<D>& box, int i) {
 }
 
 /// Node i along an axis lies at coordinate i, in spacings. Along a periodic axis node i + size is an image of node i;
-/// along any other there are walls half a spacing outside the first and the last node, at -1/2 and size - 1/2.
+/// along any other there are walls, or along x openings, half a spacing outside the first and the last node, at -1/2
+/// and size - 1/2.
 template <int D>
 struct Domain {
   std::array<int, D> size{};       ///< nodes of the whole lattice
@@ -78,7 +79,7 @@ struct Domain {
 
   /// After how many spacings everything comes again along an axis; 0: never.
   [[nodiscard]] double period(int axis) const { return periodic[axis] ? size[axis] : 0.0; }
-  /// Whether there are walls across an axis.
+  /// Whether there are walls across an axis, or openings across x.
   [[nodiscard]] bool walled(int axis) const { return !periodic[axis]; }
   /// The node in [0, size) that node i is an image of; -1: it lies beyond a wall.
   [[nodiscard]] int wrapped(int axis, int i) const {

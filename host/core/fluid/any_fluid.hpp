@@ -12,6 +12,7 @@
 #include "core/domain/bands.hpp"
 #include "core/domain/domain.hpp"
 #include "core/domain/ranks.hpp"
+#include "openings/opening.hpp"
 #include "solid_nodes.hpp"
 #include "walls.hpp"
 
@@ -20,7 +21,7 @@ namespace rouleau::core {
 /// What a fluid is made of. Lattice units.
 template <int D>
 struct FluidSetting {
-  Domain<D> domain;        ///< periodic along x
+  Domain<D> domain;        ///< along x periodic, or open
   double relaxation_rate;  ///< 1/tau of the suspending fluid
   /// Viscosity at each height y of the lattice over that of `relaxation_rate` (layers.hpp); empty: 1 everywhere.
   std::vector<double> viscosity_of_rows = {};
@@ -32,6 +33,7 @@ struct FluidSetting {
   bool viscosity_contrast = false;  ///< keep a relaxation rate where nodes are active
   /// Walls of any shape, at rest; null: none.
   std::shared_ptr<const SolidNodes<D>> solid = {};
+  Openings openings = {};  ///< of a domain that is not periodic along x
 };
 
 /// Moments of one node before collision.
@@ -115,6 +117,8 @@ class AnyFluid {
   /// Settled, with the next step's force spread.
   [[nodiscard]] virtual FluidMeasures<D> measure(WantedMeasures wanted) const = 0;
   [[nodiscard]] FluidMeasures<D> mass_and_speed() const { return measure(WantedMeasures{}); }
+  /// Of the lower and the upper end along x; settled, with the next step's force spread.
+  [[nodiscard]] virtual std::array<EndFlow, 2> end_flows() const = 0;
   [[nodiscard]] double mass() const { return mass_and_speed().mass; }
   [[nodiscard]] Energetics<D> energetics() const { return *measure({.energetics = true}).energetics; }
   [[nodiscard]] std::vector<double> row_velocities() const { return measure({.row_velocities = true}).row_velocities; }

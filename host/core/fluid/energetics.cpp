@@ -230,7 +230,7 @@ int EnergySum<T, Set>::inside(int axis, int place) const {
   return state_.setting.domain.wraps(axis) ? (place + n) % n : (place < n ? place : -1);
 }
 
-/// A row of this block or, `from` negative, of others.
+/// A row of this block or, `from` negative, of others. Beyond openings the flow goes on as it is.
 template <class T, class Set>
 void EnergySum<T, Set>::find_row(int from, const Row& row) {
   const int nx = state_.nx();
@@ -243,6 +243,10 @@ void EnergySum<T, Set>::find_row(int from, const Row& row) {
     } else if (!state_.setting.domain.wraps(0)) {
       u[k][-1] = other(-1), u[k][nx] = other(nx);
     }
+  }
+  for (double* const component : u) {
+    if (state_.setting.domain.wall_below(0)) component[-1] = component[0];
+    if (state_.setting.domain.wall_above(0)) component[nx] = component[nx - 1];
   }
 }
 

@@ -153,11 +153,14 @@ void Fluid<T, Set>::step(Range rows) {
     }
     last = row;
     if (even) receive_row(state_.lattice, row);
+    if (state_.openings) state_.openings->before_step(state_.parity, i);
     if (state_.links) state_.links->before_step(state_.parity, i);
+    if (state_.openings) state_.openings->before_collision(i, call.in);
     if (fetches && k + 1 < count) fetch_row(i + way, call, row);
     collide_row(i, row, call);
     if (state_.links) state_.links->after_step(state_.parity, i), rest_solid(i, row);
     if (frame_moves) add_moving_frame(i, row, call.out);
+    if (state_.openings) state_.openings->after_step(i, call.out);
     add_wall_momentum(state_.lattice, row, setting_.walls);
     if (even) send_row(state_.lattice, row);
     if (setting_.membranes && reaches_border(i, row)) {
@@ -249,6 +252,11 @@ void Fluid<T, Set>::copy_populations(int q, std::vector<double>& values) const {
 template <class T, class Set>
 auto Fluid<T, Set>::measure(WantedMeasures wanted) const -> FluidMeasures<dimension> {
   return core::measure(state_, ranks_, halo_.get(), last_walls_, wanted);
+}
+
+template <class T, class Set>
+std::array<EndFlow, 2> Fluid<T, Set>::end_flows() const {
+  return core::end_flows(state_, ranks_);
 }
 
 template <class T, class Set>

@@ -237,6 +237,34 @@ std::vector<double> row_velocities_without_membranes(const FluidState<T, Set>& s
 }
 
 template <class T, class Set>
+std::array<EndFlow, 2> end_flows(const FluidState<T, Set>& state, const Ranks<Set::dimension>& ranks) {
+  const Domain<Set::dimension>& domain = state.setting.domain;
+  constexpr std::size_t kinds = 3;  // what is summed of each end: velocities, densities, nodes
+  std::vector<ExactSum> sums(2 * kinds);
+  std::vector<Moments<Set::dimension>> moments(static_cast<std::size_t>(state.nx()));
+  for (int i = 0; i < state.lattice.rows(); ++i) {
+    copy_moments(state, i, moments.data());
+    state.mask.for_fluid(i, [&](int begin, int end) {
+      const auto add = [&](std::size_t which, int x) {
+        if (x < begin || x >= end) return;
+        const Moments<Set::dimension>& node = moments[static_cast<std::size_t>(x)];
+        const double values[kinds] = {node.velocity[0], node.density, 1};
+        for (std::size_t k = 0; k < kinds; ++k) sums[kinds * which + k].add(values[k]);
+      };
+      if (domain.block.begin[0] == 0) add(0, 0);
+      if (domain.block.end[0] == domain.size[0]) add(1, state.nx() - 1);
+    });
+  }
+  add_up(ranks, sums);
+  std::array<EndFlow, 2> flows;
+  for (std::size_t end = 0; end < flows.size(); ++end) {
+    const auto sum = [&](std::size_t kind) { return sums[kinds * end + kind].value(); };
+    flows[end] = {.flow = sum(0), .pressure = sum(1) / sum(2) / 3};
+  }
+  return flows;
+}
+
+template <class T, class Set>
 WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ranks<Set::dimension>& ranks,
                                        const WallVelocity& walls) {
   using Sums = WallForceSums<Set::dimension>;
@@ -290,6 +318,7 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
   template FluidMeasures<D> measure(const FluidState<T, Set>&, const Ranks<D>&, const FluidHalo<T, Set>*,    \
                                     const WallVelocity&, WantedMeasures);                                    \
   template std::vector<double> row_velocities_without_membranes(const FluidState<T, Set>&, const Ranks<D>&); \
+  template std::array<EndFlow, 2> end_flows(const FluidState<T, Set>&, const Ranks<D>&);                     \
   template WallForces<D> wall_forces(const FluidState<T, Set>&, const Ranks<D>&, const WallVelocity&);
 ROULEAU_INSTANTIATE(float, D2Q9, 2)
 ROULEAU_INSTANTIATE(double, D2Q9, 2)

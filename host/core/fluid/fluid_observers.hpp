@@ -28,6 +28,9 @@ FluidMeasures<Set::dimension> measure(const FluidState<T, Set>& state, const Ran
 template <class T, class Set>
 std::vector<double> row_velocities_without_membranes(const FluidState<T, Set>& state,
                                                      const Ranks<Set::dimension>& ranks);
+/// AnyFluid::end_flows.
+template <class T, class Set>
+std::array<EndFlow, 2> end_flows(const FluidState<T, Set>& state, const Ranks<Set::dimension>& ranks);
 /// AnyFluid::wall_forces, of walls that had these speeds.
 template <class T, class Set>
 WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ranks<Set::dimension>& ranks,

@@ -4,6 +4,7 @@
 
 #include "layers.hpp"
 #include "periodic.hpp"
+#include "relaxation.hpp"
 
 namespace rouleau::core {
 
@@ -29,6 +30,12 @@ FluidState<T, Set>::FluidState(const FluidSetting<dimension>& of_fluid)
     std::fill_n(relaxation_rate.row(row), nx(), static_cast<T>(rate_of_row(row)));
   }
   if (setting.solid) links = std::make_unique<SolidLinks<T, Set>>(lattice, *setting.solid);
+  if (setting.openings) {
+    openings = std::make_unique<OpenLinks<T, Set>>(
+        lattice, *setting.openings, setting.solid.get(), setting.walls,
+        typename OpenLinks<T, Set>::FlowThere{viscosity_of(1 / setting.relaxation_rate), setting.body_force[0],
+                                              setting.inertia});
+  }
 }
 
 template <class T, class Set>
@@ -41,6 +48,7 @@ std::size_t FluidState<T, Set>::bytes() const {
 template <class T, class Set>
 void FluidState<T, Set>::settle() {
   for (int i = 0; parity == Parity::even && i < lattice.rows(); ++i) receive_row(lattice, lattice.row(i));
+  for (int i = 0; openings && i < lattice.rows(); ++i) openings->before_step(parity, i);
   for (int i = 0; links && i < lattice.rows(); ++i) links->before_step(parity, i);
 }
 
@@ -142,6 +150,7 @@ void FluidState<T, Set>::restart() {
   parity = Parity::even;
   for (int i = 0; i < lattice.rows(); ++i) send_row(lattice, lattice.row(i));
   if (links) links->restart();
+  if (openings) openings->restart();
 }
 
 template struct FluidState<float, D2Q9>;

@@ -12,6 +12,7 @@
 #include "field.hpp"
 #include "lattice.hpp"
 #include "node_mask.hpp"
+#include "openings/open_links.hpp"
 #include "solid_links.hpp"
 
 namespace rouleau::core {
@@ -35,7 +36,8 @@ struct FluidState {
   const FluidSetting<dimension>& setting;  ///< of who has this state, and lives as long; its drive may change
   Lattice<T, Set> lattice;
   NodeMask mask;
-  std::unique_ptr<SolidLinks<T, Set>> links;  ///< null without solid nodes
+  std::unique_ptr<SolidLinks<T, Set>> links;    ///< null without solid nodes
+  std::unique_ptr<OpenLinks<T, Set>> openings;  ///< null where x is periodic
   /// Force density, and after a step the velocity, in active nodes.
   VectorField<T, dimension> force;
   Field<T, dimension> relaxation_rate;

@@ -33,7 +33,7 @@ class Lattice {
   using In = const T* [velocity_count];
   using Out = T* [velocity_count];
 
-  /// The domain's block, fluid at rest. Its first axis is periodic, or cut.
+  /// The domain's block, fluid at rest. Its first axis is periodic, cut, or open.
   explicit Lattice(const Domain<dimension>& domain);
 
   [[nodiscard]] int size(int axis) const { return domain_.block.size(axis); }

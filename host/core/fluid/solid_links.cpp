@@ -20,8 +20,12 @@ SolidLinks<T, Set>::SolidLinks(Lattice<T, Set>& lattice, const SolidNodes<dimens
   constexpr double half_way = 0.5;  // to a plane at the domain's end
   const auto out_of_domain = [&](const Node& node) {
     bool out = false;
-    for (int k = 0; k < dimension; ++k) out = out || domain.wrapped(k, node[k]) < 0;
+    for (int k = 1; k < dimension; ++k) out = out || domain.wrapped(k, node[k]) < 0;
     return out;
+  };
+  const auto cut = [&](const Node& node, Node toward) {  // beyond an opening the section goes on
+    if (domain.wrapped(0, node[0] + toward[0]) < 0) toward[0] = 0;
+    return solid.cut(node, toward);
   };
   for (int i = 0; i < lattice.rows(); ++i) {
     first_.push_back(links_.size());
@@ -37,9 +41,9 @@ SolidLinks<T, Set>::SolidLinks(Lattice<T, Set>& lattice, const SolidNodes<dimens
         for (int k = 0; k < dimension; ++k) away[k] = Set::velocity[q][k], toward[k] = -away[k];
         const Node beyond = moved(node, toward), behind = moved(node, away);
         const bool plane = out_of_domain(beyond);
-        if (plane ? !(solid.cut(node, toward) < half_way) : !solid.at(domain, beyond)) continue;
+        if (plane ? !(cut(node, toward) < half_way) : !solid.at(domain, beyond)) continue;
         const bool alone = out_of_domain(behind) || solid.at(domain, behind);
-        const double share = alone ? half_way : solid.cut(node, toward);
+        const double share = alone ? half_way : cut(node, toward);
         T* const own = slot(q, x);
         links_.push_back({.own = own,
                           .toward = slot(w, x),

@@ -37,13 +37,27 @@ bool is_enclosed(const BasicSolverSetup<D>& setup) {
   return D == 3 && setup.domain.walled(D - 1);
 }
 
+/// What cannot be between openings, yet or at all.
+template <int D>
+void require_openings(const BasicSolverSetup<D>& setup, bool cells) {
+  if (setup.openings.has_value() == setup.domain.periodic[0])
+    throw std::invalid_argument("a lattice is periodic along x, or has openings at its ends");
+  if (!setup.openings) return;
+  if (setup.domain.size[0] < 2) throw std::invalid_argument("between two openings there are at least two nodes");
+  if (cells || setup.follow_cells) throw std::invalid_argument("cells do not pass openings");
+  if (setup.developed || setup.mean_velocity != 0)
+    throw std::invalid_argument("between openings no developed flow is known to begin with, and no mean velocity kept");
+  if (setup.oscillation.any() || !setup.layers.empty())
+    throw std::invalid_argument("the flow through an opening knows neither layers nor oscillations");
+}
+
 template <int D, class Cells>
 FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const Cells& cells) {
   require_types(setup, cells);
   for (const int nodes : setup.domain.size) {
     if (nodes < 1) throw std::invalid_argument("a lattice needs at least one node along every axis");
   }
-  if (!setup.domain.periodic[0]) throw std::invalid_argument("a lattice without walls along y is periodic along x");
+  require_openings(setup, !cells.cells.empty());
   if (is_enclosed(setup) && setup.developed && (setup.oscillation.any() || !setup.layers.empty()))
     throw std::invalid_argument(
         "between walls across z, the developed flow of layers or of an oscillation is not known");
@@ -64,7 +78,8 @@ FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const Cells& cel
                           .membranes = !cells.cells.empty(),
                           .stencil_above = stencil_above(setup.kernel),
                           .viscosity_contrast = has_contrast(setup, cells),
-                          .solid = setup.solid};
+                          .solid = setup.solid,
+                          .openings = setup.openings};
   const double body_force[] = {setup.body_force_x, setup.body_force_y, setup.body_force_z};
   std::copy_n(body_force, D, setting.body_force.begin());
   return setting;

@@ -9,6 +9,7 @@
 #include "core/domain/domain.hpp"
 #include "core/fluid/developed_flow.hpp"
 #include "core/fluid/layers.hpp"
+#include "core/fluid/openings/opening.hpp"
 #include "core/fluid/oscillation.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "core/fluid/solid_nodes.hpp"
@@ -29,8 +30,10 @@ struct CellType {
 /// are 1.
 template <int D>
 struct BasicSolverSetup {
-  /// Periodic along x; along y and z periodic, or between walls.
+  /// Along x periodic, or between openings; along y and z periodic, or between walls.
   Domain<D> domain = {};
+  /// Of an x that is not periodic. No cells pass them.
+  Openings openings = {};
   /// Walls of any shape, at rest, beside those across y and z: the region of the fluid, with images along periodic
   /// axes, and the domain's nodes outside of it; null: none.
   RegionPointer<D> region = {};

@@ -1,0 +1,28 @@
+// Openings: ends of the lattice along x that fluid goes through.
+#pragma once
+
+#include <array>
+#include <optional>
+
+namespace rouleau::core {
+
+/// What an end of a lattice that is not periodic along x is kept at. Its plane lies half a spacing outside the
+/// outermost nodes, as a wall does. Lattice units.
+struct Opening {
+  enum class Kind {
+    pressure,  ///< `value`: the mean pressure, above that of density 1
+    velocity   ///< `value`: the mean velocity along +x of the fluid nodes of the section (Section)
+  };
+  Kind kind = Kind::pressure;
+  double value = 0;
+};
+/// Of the lower and the upper end; none: periodic along x.
+using Openings = std::optional<std::array<Opening, 2>>;
+
+/// What goes through the planes of nodes at the two ends, lattice units.
+struct EndFlow {
+  double flow = 0;      ///< along +x: the sum of the nodes' velocities
+  double pressure = 0;  ///< mean of the nodes, above that of density 1
+};
+
+}  // namespace rouleau::core

@@ -1,0 +1,119 @@
+#include "section.hpp"
+
+#include <Eigen/SparseLU>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <vector>
+
+namespace rouleau::core {
+
+namespace {
+
+/// The equations of the fluid nodes of a section: -(second derivatives of u) = force, u the walls' velocity at walls.
+template <int D>
+class SectionEquations {
+ public:
+  SectionEquations(const Domain<D>& domain, const SolidNodes<D>* solid, const WallVelocity& walls, int x)
+      : domain_({domain.size, domain.periodic, {{}, domain.size}}), solid_(solid), walls_(walls), column_(x) {
+    const int rows = row_count(domain_.block);
+    for (int i = 0; i < rows; ++i) {
+      number_.push_back(is_solid(node_of(i)) ? -1 : count_);
+      count_ += number_.back() >= 0 ? 1 : 0;
+    }
+    of_walls_ = Eigen::VectorXd::Zero(count_);
+    for (int i = 0; i < rows; ++i) {
+      if (number_[static_cast<std::size_t>(i)] >= 0) add(i);
+    }
+    if (!walled_) return;
+    Eigen::SparseMatrix<double> matrix(count_, count_);
+    matrix.setFromTriplets(entries_.begin(), entries_.end());
+    factors_.compute(matrix);
+    if (factors_.info() != Eigen::Success) throw std::runtime_error("the flow through a section was not found");
+  }
+
+  [[nodiscard]] Section solve() const {
+    if (count_ == 0) throw std::invalid_argument("an opening leads into a wall: its section has no fluid");
+    Eigen::VectorXd driven = Eigen::VectorXd::Constant(count_, INFINITY), dragged = of_walls_;
+    if (walled_) driven = factors_.solve(Eigen::VectorXd::Ones(count_)), dragged = factors_.solve(of_walls_);
+    Section section{.driven = {}, .dragged = {}, .mean_driven = driven.mean(), .mean_dragged = dragged.mean()};
+    for (const int number : number_) {
+      section.driven.push_back(number < 0 ? 0 : driven[number]);
+      section.dragged.push_back(number < 0 ? 0 : dragged[number]);
+    }
+    return section;
+  }
+
+ private:
+  using Node = std::array<int, D>;
+  [[nodiscard]] Node node_of(int i) const {
+    Node node{column_};
+    const auto row = row_of(domain_.block, i);
+    for (int k = 1; k < D; ++k) node[k] = row[k - 1];
+    return node;
+  }
+  [[nodiscard]] bool is_solid(const Node& node) const { return solid_ != nullptr && solid_->at(node); }
+
+  /// What lies beside a node: another one, or a wall at a share of the link.
+  struct Beside {
+    int node = -1;
+    double share = 1, speed = 0;
+  };
+  [[nodiscard]] Beside beside(Node node, int axis, int way) const {
+    constexpr double half_way = 0.5;  // to a plane at the domain's end
+    Node to{};
+    to[axis] = way;
+    const int place = domain_.wrapped(axis, node[axis] + way);
+    const double cut = solid_ != nullptr ? solid_->cut(node, to) : half_way;
+    if (place < 0 && cut < half_way) return {.share = cut};
+    if (place < 0) return {.share = half_way, .speed = axis != 1 ? 0 : way < 0 ? walls_.lower : walls_.upper};
+    node[axis] = place;
+    if (is_solid(node)) return {.share = cut};
+    std::size_t row = 0;
+    for (int k = D - 1; k > 0; --k)
+      row = row * static_cast<std::size_t>(domain_.size[k]) + static_cast<std::size_t>(node[k]);
+    return {.node = number_[row]};
+  }
+  void add(int i) {
+    const int number = number_[static_cast<std::size_t>(i)];
+    double own = 0;
+    for (int axis = 1; axis < D; ++axis) {
+      const Beside ends[] = {beside(node_of(i), axis, -1), beside(node_of(i), axis, 1)};
+      const double width = (ends[0].share + ends[1].share) / 2;
+      for (const Beside& end : ends) {
+        const double factor = 1 / (end.share * width);
+        own += factor;
+        if (end.node >= 0) {
+          entries_.emplace_back(number, end.node, -factor);
+        } else {
+          of_walls_[number] += factor * end.speed;
+          walled_ = true;
+        }
+      }
+    }
+    entries_.emplace_back(number, number, own);
+  }
+
+  Domain<D> domain_;
+  const SolidNodes<D>* solid_;
+  WallVelocity walls_;
+  int column_;
+  std::vector<int> number_;  ///< of each row's node among the fluid's; -1 in the solid
+  int count_ = 0;
+  bool walled_ = false;
+  std::vector<Eigen::Triplet<double>> entries_;
+  Eigen::VectorXd of_walls_;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> factors_;
+};
+
+}  // namespace
+
+template <int D>
+Section section_at(const Domain<D>& domain, const SolidNodes<D>* solid, const WallVelocity& walls, int x) {
+  return SectionEquations<D>(domain, solid, walls, x).solve();
+}
+
+template Section section_at(const Domain<2>&, const SolidNodes<2>*, const WallVelocity&, int);
+template Section section_at(const Domain<3>&, const SolidNodes<3>*, const WallVelocity&, int);
+
+}  // namespace rouleau::core
