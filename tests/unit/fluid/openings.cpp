@@ -1,0 +1,187 @@
+// Flow between openings at the ends of x, by velocity and by pressure.
+#include "core/fluid/openings/opening.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <thread>
+
+#include "core/domain/decomposition.hpp"
+#include "core/domain/transport.hpp"
+#include "core/fluid/openings/section.hpp"
+#include "unit/flow_fixture.hpp"
+#include "unit/shipped_models.hpp"
+
+using namespace rouleau;
+using namespace rouleau::core;
+using namespace rouleau::test;
+
+namespace {
+
+Opening velocity(double value) { return {Opening::Kind::velocity, value}; }
+Opening pressure(double value) { return {Opening::Kind::pressure, value}; }
+
+template <int D>
+FluidSetting<D> open_setting(const Domain<D>& domain, double tau, const Opening& lower, const Opening& upper) {
+  return {.domain = domain, .relaxation_rate = 1 / tau, .openings = std::array{lower, upper}};
+}
+
+/// Steps in which what is missing in a channel of this height has become less than its e^-times.
+long settled(double height, double tau, double times) {
+  return std::lround(times * height * height / (M_PI * M_PI * (tau - 0.5) / 3));
+}
+
+/// L2 error of the velocity in a plane channel over its L2 norm, where this gradient drives it.
+double poiseuille_error(Fluid<double>& fluid, double gradient) {
+  const auto [nx, ny] = fluid.setting().domain.size;
+  const double viscosity = (1 / fluid.setting().relaxation_rate - 0.5) / 3;
+  double error = 0, norm = 0;
+  std::vector<Moments<2>> row;
+  fluid.settle();
+  for (int y = 0; y < ny; ++y) {
+    fluid.moments(y, row);
+    const double s = y - (ny - 1) / 2.0, exact = gradient / (2 * viscosity) * (ny * ny / 4.0 - s * s);
+    for (int x = 0; x < nx; ++x) {
+      error += std::pow(row[x].velocity[0] - exact, 2) + std::pow(row[x].velocity[1], 2);
+      norm += exact * exact;
+    }
+  }
+  return std::sqrt(error / norm);
+}
+
+/// Of a channel twice as long as it is high, with a mean velocity of 0.01 over its height.
+double error_between_openings(bool by_velocity, int height, double tau) {
+  const double mean = 0.01 / height, gradient = 12 * (tau - 0.5) / 3 * mean / (height * height);
+  const Domain<2> domain{{2 * height, height}, {false, false}};
+  Fluid<double> fluid(
+      open_setting(domain, tau, by_velocity ? velocity(mean) : pressure(gradient * domain.size[0]), pressure(0)),
+      trt(tau, false));
+  advance(fluid, settled(height, tau, 30));
+  return poiseuille_error(fluid, gradient);
+}
+
+template <class T, class Set>
+std::unique_ptr<Fluid<T, Set>> started(FluidSetting<Set::dimension> setting, const Domain<Set::dimension>& domain,
+                                       const Ranks<Set::dimension>& ranks) {
+  setting.domain = domain;
+  const double tau = 1 / setting.relaxation_rate;
+  auto fluid = std::make_unique<Fluid<T, Set>>(setting, trt(tau, setting.inertia, Set::dimension), ranks);
+  const auto noise = [](int x, int y, int z) {
+    NodeState<Set::dimension> state{};
+    state.density = 1e-4 * ((x * 73 + y * 191 + z * 37) % 101 - 50);
+    state.velocity[1] = 1e-4 * ((x * 31 + y * 17 + z * 91) % 103 - 51);
+    return state;
+  };
+  if constexpr (Set::dimension == 2) {
+    fluid->set_state([&](int x, int y) { return noise(x, y, 0); });
+  } else {
+    fluid->set_state(noise);
+  }
+  return fluid;
+}
+
+/// Populations of all nodes and the flow at the ends after so many steps, in blocks that are ranks of one process.
+template <class T, class Set>
+void compare_with_blocks(const FluidSetting<Set::dimension>& setting, const Decomposition<Set::dimension>& cut,
+                         int steps) {
+  const auto whole = started<T, Set>(setting, setting.domain, {});
+  advance(*whole, steps);
+  whole->settle();
+  const auto flows = whole->end_flows();
+  const auto ends = make_loopback(cut.ranks());
+  std::vector<long> different(ends.size());
+  std::vector<std::thread> threads;
+  for (int rank = 0; rank < cut.ranks(); ++rank) {
+    threads.emplace_back([&, rank] {
+      const auto block = started<T, Set>(setting, cut.domain(rank), {&cut, ends[rank].get()});
+      for (int i = 0; i < steps; ++i) {
+        block->step(block->rows());
+        block->end_step();
+        block->begin_halo();
+        block->end_halo();
+      }
+      block->settle();
+      const Box<Set::dimension>& box = block->setting().domain.block;
+      for (int i = 0; i < block->rows().end; ++i) {
+        const auto row = row_of(box, i);
+        auto of_whole = row;
+        std::array<int, Set::dimension> node;
+        for (int k = 1; k < Set::dimension; ++k) node[k] = of_whole[k - 1] += box.begin[k];
+        for (int x = 0; x < box.size(0); ++x) {
+          node[0] = x + box.begin[0];
+          if (setting.solid && setting.solid->at(node)) continue;
+          for (int q = 0; q < Set::velocity_count; ++q)
+            different[rank] += block->population(q, x, row) != whole->population(q, node[0], of_whole) ? 1 : 0;
+        }
+      }
+      const auto flows_too = block->end_flows();
+      for (std::size_t end = 0; end < 2; ++end)
+        different[rank] += flows_too[end].flow != flows[end].flow || flows_too[end].pressure != flows[end].pressure;
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const long count : different) CHECK(count == 0);
+  CHECK(std::isfinite(flows[0].flow));
+}
+
+}  // namespace
+
+TEST_CASE("the developed flow of a section: exact between planes, uniform without walls") {
+  const Domain<2> channel{{4, 9}, {false, false}};
+  const Section plane = section_at<2>(channel, nullptr, {-0.5, 1}, 0);
+  for (int y = 0; y < 9; ++y) {
+    const double s = y - 4.0;
+    CHECK(plane.driven[y] == Approx((4.5 * 4.5 - s * s) / 2).epsilon(1e-12));
+    CHECK(plane.dragged[y] == Approx(0.25 + 1.5 * s / 9).margin(1e-12));
+  }
+  const Section open = section_at<2>({{4, 9}, {false, true}}, nullptr, {}, 0);
+  CHECK(open.velocity(3, 0.2) == 0.2);
+}
+
+TEST_CASE("plane Poiseuille flow between openings is of second order, by velocity and by pressure") {
+  const bool by_velocity = GENERATE(true, false);
+  const double tau = GENERATE(0.8, 2.0);
+  const double coarse = error_between_openings(by_velocity, 8, tau),
+               fine = error_between_openings(by_velocity, 16, tau);
+  CAPTURE(by_velocity, tau, coarse, fine);
+  CHECK(fine < 3e-3);
+  CHECK(std::log2(coarse / fine) > 1.8);
+}
+
+TEMPLATE_TEST_CASE("between openings blocks give the same bits as one lattice", "", float, double) {
+  const bool by_velocity = GENERATE(true, false), periodic_y = GENERATE(false, true);
+  const Opening lower = by_velocity ? velocity(0.01) : pressure(0.001);
+  FluidSetting<2> flat = open_setting<2>({{13, 10}, {false, periodic_y}}, 0.8, lower, pressure(0));
+  flat.inertia = true, flat.walls = {-0.01, 0.02}, flat.body_force = {1e-5, 0};
+  for (const std::array<int, 2> cut : {std::array{2, 1}, std::array{1, 2}, std::array{3, 3}, std::array{13, 1}})
+    compare_with_blocks<TestType, D2Q9>(flat, Decomposition<2>::even(flat.domain, cut), 17);
+  const Domain<3> domain{{8, 11, 11}, {false, false, false}};
+  FluidSetting<3> tube = open_setting(domain, 1.2, lower, pressure(0));
+  tube.solid = std::make_shared<const SolidNodes<3>>(domain.size, tube_region(domain.size, 4.6));
+  compare_with_blocks<TestType, D3Q19>(tube, Decomposition<3>::even(domain, {2, 2, 2}), 12);
+}
+
+TEST_CASE("a fluid between openings goes on from its populations to the same bits") {
+  const Domain<2> domain{{12, 8}, {false, false}};
+  const FluidSetting<2> setting = open_setting(domain, 0.9, velocity(0.01), pressure(0));
+  const int before = GENERATE(6, 7);
+  const auto fluid = started<double, D2Q9>(setting, domain, {});
+  advance(*fluid, before);
+  fluid->settle();
+  Fluid<double> resumed(setting, trt(0.9, false));
+  resumed.restore(
+      [&](int q) {
+        std::vector<double> values;
+        fluid->copy_populations(q, values);
+        return values;
+      },
+      true);
+  advance(*fluid, 9), advance(resumed, 9);
+  fluid->settle(), resumed.settle();
+  long different = 0;
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 12; ++x) {
+      for (int q = 0; q < 9; ++q) different += fluid->population(q, x, y) != resumed.population(q, x, y) ? 1 : 0;
+    }
+  }
+  CHECK(different == 0);
+}
