@@ -12,7 +12,7 @@
 namespace rouleau::core {
 
 /// Of the fluid nodes of a lattice at column x, if the section there goes on without end. Walls lie where the lattice's
-/// links are cut, and velocities are exact between planes, else of second order (Shortley and Weller, J. Appl. Phys. 9,
+/// links are cut, and velocities are exact between planes (Shortley and Weller, J. Appl. Phys. 9,
 /// 334, 1938). Several channels beside each other have one pressure gradient.
 struct Section {
   /// By row of the lattice, 0 in the solid: the velocity along x for each force per volume over the viscosity, and what
