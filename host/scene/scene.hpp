@@ -10,6 +10,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <variant>
@@ -43,10 +44,30 @@ struct Passages {
   std::array<double, 2> open = {};  ///< m2, or m in two dimensions, at the lower end along x and the upper one
 };
 
+/// Cells that come in through an opening while the run goes on.
+struct Feed {
+  int type;                  ///< index into Scene::cell_types
+  double hematocrit;         ///< cell volume that comes in over all volume that comes in: a discharge hematocrit
+  std::uint32_t seed;        ///< of places and angles
+  double length;             ///< m, of the piece behind the opening in which they appear
+  int first = 0, count = 0;  ///< they are Scene::cells[first] ... [first + count - 1], in the order in which they come
+  std::string pointer;
+};
+
+/// What an end of the domain along x is kept at: a pressure or a mean velocity.
+struct Opening {
+  std::optional<double> mean_velocity;  ///< m/s into the domain, over the open part of its end
+  std::optional<double> pressure;       ///< Pa
+  std::optional<Feed> cells = {};
+  std::string pointer;
+};
+
 struct Domain {
   Vector size{0, 0};                ///< m, along two axes or three
   std::vector<int> nodes = {0, 0};  ///< of the lattice along each axis; the spacing is the same along all
-  /// By axis; false: solid walls at both ends. x is periodic always, and z where there is none.
+  /// Inlet and outlet, at the lower and the upper end along x; none: x is periodic.
+  std::optional<std::array<Opening, 2>> openings = {};
+  /// By axis; false: solid walls at both ends, or along x openings. z is where there is none.
   std::array<bool, 3> periodic{true, false, true};
   /// Of a tube along x through the middle, in place of walls across y and z, m; in three dimensions.
   std::optional<double> tube_radius = {};
@@ -281,6 +302,7 @@ struct Scene {
   Numerics numerics;
   std::vector<CellType> cell_types;
   std::vector<CellPlacement> cells;
+  std::size_t fed = 0;  ///< the last so many of `cells` are not placed: they come in while the run goes on
   std::vector<RandomPacking> packings;
   std::vector<Interaction> interactions;
   std::vector<Stage> stages;
@@ -291,6 +313,8 @@ struct Scene {
   std::vector<std::filesystem::path> plugin_dirs;  ///< relative ones begin with the scene's folder
   std::shared_ptr<const json::Document> document;  ///< for places in later errors, and for the report
 
+  /// The cells that are there at the beginning.
+  [[nodiscard]] std::span<const CellPlacement> placed() const { return {cells.data(), cells.size() - fed}; }
   /// Names of what an interaction acts between.
   [[nodiscard]] std::array<std::string, 2> names_of(const Interaction& interaction) const;
   /// Place of a JSON pointer in the scene file, for an Error.
