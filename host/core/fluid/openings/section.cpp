@@ -79,9 +79,9 @@ class SectionEquations {
     double own = 0;
     for (int axis = 1; axis < D; ++axis) {
       const Beside ends[] = {beside(node_of(i), axis, -1), beside(node_of(i), axis, 1)};
-      const double width = (ends[0].share + ends[1].share) / 2;
+      const double span = (ends[0].share + ends[1].share) / 2;
       for (const Beside& end : ends) {
-        const double factor = 1 / (end.share * width);
+        const double factor = 1 / (end.share * span);
         own += factor;
         if (end.node >= 0) {
           entries_.emplace_back(number, end.node, -factor);
