@@ -144,7 +144,7 @@ void Coupling<T, D>::interpolate(Worker worker, Cells<D>& cells, const VectorFie
     task.origin[k] = velocity[k].row(std::array<int, D - 1>{}) - first_of_block(velocity[k]);
   }
   task.fetch_ahead = velocity[0].bytes() > large_field;
-  if (domain_.whole()) {
+  if (domain_.whole() && cells.part.empty()) {
     const Range nodes = cells.node_share(worker);
     task.begin = nodes.begin, task.end = nodes.end;
     loops_->interpolate(&task);

@@ -17,18 +17,12 @@ FluidState<T, Set>::FluidState(const FluidSetting<dimension>& of_fluid)
     for (auto& component : force) component = Field<T, dimension>(size);
   }
   const bool layered = !setting.viscosity_of_rows.empty();
-  if (setting.viscosity_contrast || layered) {
-    relaxation_rate = Field<T, dimension>(size);
-    relaxation_rate.fill(static_cast<T>(setting.relaxation_rate));
-  }
+  if (setting.viscosity_contrast || layered) relaxation_rate = Field<T, dimension>(size);
   for (int y = 0; layered && y < size[1]; ++y) {
     const double ratio = setting.viscosity_of_rows.at(setting.domain.block.begin[1] + y);
     rate_of_height.push_back(rate_of_layer(setting.relaxation_rate, ratio));
   }
-  for (int i = 0; layered && i < lattice.rows(); ++i) {
-    const Row row = lattice.row(i);
-    std::fill_n(relaxation_rate.row(row), nx(), static_cast<T>(rate_of_row(row)));
-  }
+  set_plain_rates();
   if (setting.solid) links = std::make_unique<SolidLinks<T, Set>>(lattice, *setting.solid);
   if (setting.openings) {
     openings = std::make_unique<OpenLinks<T, Set>>(
@@ -43,6 +37,16 @@ std::size_t FluidState<T, Set>::bytes() const {
   std::size_t sum = lattice.bytes() + relaxation_rate.bytes();
   for (const auto& component : force) sum += component.bytes();
   return sum;
+}
+
+template <class T, class Set>
+void FluidState<T, Set>::set_plain_rates() {
+  if (!setting.viscosity_contrast && rate_of_height.empty()) return;
+  relaxation_rate.fill(static_cast<T>(setting.relaxation_rate));
+  for (int i = 0; !rate_of_height.empty() && i < lattice.rows(); ++i) {
+    const Row row = lattice.row(i);
+    std::fill_n(relaxation_rate.row(row), nx(), static_cast<T>(rate_of_row(row)));
+  }
 }
 
 template <class T, class Set>

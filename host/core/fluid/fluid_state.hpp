@@ -72,6 +72,8 @@ struct FluidState {
   [[nodiscard]] double equilibrium(int q, double density, const std::array<double, dimension>& u) const;
   /// The populations of all rows have been set.
   void restart();
+  /// The relaxation rates are those of the suspending fluid.
+  void set_plain_rates();
 };
 
 extern template struct FluidState<float, D2Q9>;

@@ -27,8 +27,9 @@ void NodeMask::mark(int y, int begin, int end) {
   if (y < 0 || y >= ny_ || begin >= end) return;
   std::uint64_t* row = bits_.data() + static_cast<std::size_t>(words_) * y;
   const int size = along_x_.size[0];
+  if (!along_x_.periodic[0]) begin = std::clamp(begin, 0, size), end = std::clamp(end, begin, size);
   const int first = end - begin < size ? along_x_.wrapped(0, begin) : 0, last = first + std::min(end - begin, size);
-  mark_nodes(row, first, std::min(last, size));
+  if (first < last) mark_nodes(row, first, std::min(last, size));
   if (last > size) mark_nodes(row, 0, last - size);
   list_spans(y);
 }

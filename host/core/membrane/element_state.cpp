@@ -15,9 +15,11 @@ std::size_t keep_state(std::vector<ElementState>& states, ElementState variable,
       for (double& value : found->value) value *= ratio;
       found->unit = variable.unit;
     }
+    found->initial = initial;
     return static_cast<std::size_t>(found - states.begin());
   }
   variable.value.assign(count, initial);
+  variable.initial = initial;
   states.push_back(std::move(variable));
   return states.size() - 1;
 }

@@ -21,6 +21,8 @@ struct ElementState {
   /// SI size of the lattice unit that the values are in.
   double unit;
   std::vector<double> value;
+  /// Lattice units: of a cell that has just come.
+  double initial = 0;
 };
 
 /// One state variable of one interaction.

@@ -47,6 +47,10 @@ class AnySolver {
   /// Goes on from where a solver of this setup and these cells was.
   virtual void start(SolverState state) = 0;
 
+  /// Between two steps, when cells have come or gone (CellNodes::part). The fluid stays as it is. `ghosts`: of ranks,
+  /// what this one is to know of the cells, of which no more is read; none without other ranks.
+  virtual void renew_cells(std::optional<GhostCells<D>> ghosts) = 0;
+
   /// Takes time steps with one worker. Between steps nodes are where the last step has moved them to.
   void step(long count = 1);
   /// The two halves of a step, with one worker: forces at the present positions, after which the state may be observed;

@@ -18,7 +18,9 @@ CellExchange<D>::CellExchange(GhostCells<D> ghosts, bool velocities)
 
 template <int D>
 std::vector<BoundingBox<D>> CellExchange<D>::boxes_of_all(const Cells& cells) const {
-  std::vector<BoundingBox<D>> mine, all(cells.cells.size());
+  BoundingBox<D> none;
+  none.least.fill(NAN), none.most.fill(NAN);
+  std::vector<BoundingBox<D>> mine, all(cells.cells.size(), none);
   for (int c = 0; c < cells.cell_count(); ++c) {
     if (ghosts_.owns(c)) mine.push_back(box_of<D>(cells, c));
   }
@@ -26,6 +28,7 @@ std::vector<BoundingBox<D>> CellExchange<D>::boxes_of_all(const Cells& cells) co
   std::vector<std::size_t> next(of_ranks.size());
   for (int c = 0; c < cells.cell_count(); ++c) {
     const int owner = ghosts_.owner(c);
+    if (owner == GhostCells<D>::nobody) continue;
     all[c] = of_ranks[owner][next[owner]++];
   }
   return all;
@@ -243,7 +246,8 @@ void CellExchange<D>::pass_on(Cells& cells, DisplacementWatch& watch, const Ghos
   receive_positions(cells, watch);
   std::vector<typename GhostCells<D>::Handover> handovers;
   for (int c = 0; c < cells.cell_count(); ++c) {
-    if (next.owner(c) != ghosts_.owner(c)) handovers.push_back({c, ghosts_.owner(c), next.owner(c)});
+    const bool there = ghosts_.owner(c) != GhostCells<D>::nobody && next.owner(c) != GhostCells<D>::nobody;
+    if (there && next.owner(c) != ghosts_.owner(c)) handovers.push_back({c, ghosts_.owner(c), next.owner(c)});
   }
   hand_over(cells, watch, handovers);
   constexpr Shown everything{.velocities = true, .memory = true};

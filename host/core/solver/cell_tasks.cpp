@@ -127,7 +127,7 @@ typename CellExchange<D>::Parts CellTasks<T, D>::parts() {
 
 template <class T, int D>
 void CellTasks<T, D>::forget_unknown() {
-  if (!exchange_) return;
+  if (cells_.part.empty()) return;
   const std::vector<Range> nodes = cells_.unknown_nodes();
   if (nodes.empty()) return;
   cells_.forget(nodes);

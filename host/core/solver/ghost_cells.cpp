@@ -81,7 +81,7 @@ template <int D>
 auto GhostCells<D>::change_owners(const std::vector<BoundingBox<D>>& boxes) -> std::vector<Handover> {
   std::vector<Handover> handovers;
   for (int c = 0; c < static_cast<int>(boxes.size()); ++c) {
-    if (!boxes[c].usable()) continue;
+    if (owner_[c] == nobody || !boxes[c].usable()) continue;
     const int place = owner_by_place(boxes[c], *ranks_.blocks);
     if (place == owner_[c]) continue;
     const Domain<D> of_owner = ranks_.blocks->domain(owner_[c]);
@@ -103,6 +103,10 @@ void GhostCells<D>::renew(const std::vector<BoundingBox<D>>& boxes) {
   const Domain<D> domain = ranks_.blocks->domain(own);
   peers_.clear();
   for (int c = 0; c < cells; ++c) {
+    if (owner_[c] == nobody) {
+      reaching_[c] = inside_[c] = known_[c] = 0;
+      continue;
+    }
     bool here = !boxes[c].usable();
     if (owner_[c] == own) {
       for (const int rank : reached_by(boxes[c], *ranks_.blocks, reach_.lattice)) {

@@ -16,13 +16,15 @@ namespace rouleau::core {
 /// will do. The one whose block the cell is above hears of it least, so that cells which travel change hands. Other
 /// ranks know a cell, as a ghost, whose blocks it may reach or with whose cells it may act, while no node has
 /// moved further than the skin since the boxes of all cells were last compared. All ranks find the same from the same
-/// boxes, so that nobody has to say which cells a message is about.
+/// boxes, so that nobody has to say which cells a message is about. Cells that have not come yet, or have gone, have no
+/// owner, and no rank knows them.
 template <int D>
 class GhostCells {
  public:
   static constexpr double skin = 1;  ///< spacings
+  static constexpr int nobody = -1;  ///< the owner of a cell that is not there
 
-  /// By the boxes of all cells. `owner[c]`: rank of cell c, beyond its end by place.
+  /// By the boxes of all cells. `owner[c]`: rank of cell c, or nobody; beyond its end by place.
   GhostCells(const Ranks<D>& ranks, const std::vector<BoundingBox<D>>& boxes, GhostReach reach,
              std::vector<int> owner = {});
 

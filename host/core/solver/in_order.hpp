@@ -18,7 +18,8 @@ namespace rouleau::core {
 inline constexpr int nodes_of_run = static_cast<int>(band_bytes / sizeof(double));
 
 /// Calls take(run, values) on the first rank for one run of cells [run.begin, run.end) after another, until it has had
-/// all: `values` are those that add(cell, values) has appended for each of them on its owner, cell after cell. All
+/// all: `values` are those that add(cell, values) has appended for each of them on its owner, cell after cell; on the first
+/// rank of a cell that is not there. All
 /// ranks together, at any time when no message is on its way. `ghosts`: whose they are; null: this rank has all. No
 /// rank holds more than some runs at a time: one that is faster than the first rank waits for it, as for bands.
 template <class V, int D, class Add, class Take>
@@ -26,7 +27,7 @@ void give_in_order(const GhostCells<D>* ghosts, const CellNodes& cells, Add add,
                    int nodes_at_once = nodes_of_run) {
   Transport* const transport = ghosts != nullptr ? ghosts->ranks().transport : nullptr;
   const int own = transport != nullptr ? transport->rank() : 0;
-  const auto owner = [&](int cell) { return ghosts != nullptr ? ghosts->owner(cell) : 0; };
+  const auto owner = [&](int cell) { return ghosts != nullptr ? std::max(ghosts->owner(cell), 0) : 0; };
   struct Part {
     std::vector<std::size_t> counts;  // of values, of each of a rank's cells
     std::vector<V> values;

@@ -39,12 +39,12 @@ bool is_enclosed(const BasicSolverSetup<D>& setup) {
 
 /// What cannot be between openings, yet or at all.
 template <int D>
-void require_openings(const BasicSolverSetup<D>& setup, bool cells) {
+void require_openings(const BasicSolverSetup<D>& setup) {
   if (setup.openings.has_value() == setup.domain.periodic[0])
     throw std::invalid_argument("a lattice is periodic along x, or has openings at its ends");
   if (!setup.openings) return;
   if (setup.domain.size[0] < 2) throw std::invalid_argument("between two openings there are at least two nodes");
-  if (cells || setup.follow_cells) throw std::invalid_argument("cells do not pass openings");
+  if (setup.follow_cells) throw std::invalid_argument("between openings the frame does not follow the cells");
   if (setup.developed || setup.mean_velocity != 0)
     throw std::invalid_argument("between openings no developed flow is known to begin with, and no mean velocity kept");
   if (setup.oscillation.any() || !setup.layers.empty())
@@ -57,7 +57,7 @@ FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const Cells& cel
   for (const int nodes : setup.domain.size) {
     if (nodes < 1) throw std::invalid_argument("a lattice needs at least one node along every axis");
   }
-  require_openings(setup, !cells.cells.empty());
+  require_openings(setup);
   if (is_enclosed(setup) && setup.developed && (setup.oscillation.any() || !setup.layers.empty()))
     throw std::invalid_argument(
         "between walls across z, the developed flow of layers or of an oscillation is not known");
@@ -261,6 +261,13 @@ void Solver<T, Set>::start(SolverState state) {
   }
   fluid_.restore(state.populations, state.walls_have_acted);
   if (cell_tasks_) cell_tasks_->restore(std::move(state.viscosity));
+}
+
+template <class T, class Set>
+void Solver<T, Set>::renew_cells(std::optional<GhostCells<dimension>> ghosts) {
+  cell_tasks_.reset();
+  fluid_.forget_cells();
+  cell_tasks_ = std::make_unique<CellTasks>(setup_, cells_, fluid_, std::move(ghosts));
 }
 
 /// Walls in the middle of the step and the force at its beginning make the scheme one of second order in time: a

@@ -32,6 +32,7 @@ class Solver final : public AnySolver<Set::dimension> {
 
   void start(Any* former = nullptr) override;
   void start(SolverState state) override;
+  void renew_cells(std::optional<GhostCells<dimension>> ghosts) override;
 
   [[nodiscard]] Fluid<T, Set>& fluid() override { return fluid_; }
   [[nodiscard]] const Fluid<T, Set>& fluid() const override { return fluid_; }

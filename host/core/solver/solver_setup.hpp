@@ -32,7 +32,8 @@ template <int D>
 struct BasicSolverSetup {
   /// Along x periodic, or between openings; along y and z periodic, or between walls.
   Domain<D> domain = {};
-  /// Of an x that is not periodic. No cells pass them.
+  /// Of an x that is not periodic. Cells come and go between steps (AnySolver::renew_cells): their nodes stay so far
+  /// from openings that no stencil of the kernel reaches beyond.
   Openings openings = {};
   /// Walls of any shape, at rest, beside those across y and z: the region of the fluid, with images along periodic
   /// axes, and the domain's nodes outside of it; null: none.

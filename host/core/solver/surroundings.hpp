@@ -15,7 +15,7 @@ class Surroundings {
   using Cells = typename CellExchange<D>::Cells;
 
   /// Of the only rank.
-  explicit Surroundings(const Cells& cells) : cells_(cells), boxes_(boxes_of<D>(cells)) {}
+  explicit Surroundings(const Cells& cells) : cells_(cells), boxes_(boxes_of_known<D>(cells)) {}
   /// `exchange` of these cells, whose messages have been taken. Both outlive this.
   Surroundings(Cells& cells, const CellExchange<D>& exchange);
   /// This rank forgets the cells that it does not need.
