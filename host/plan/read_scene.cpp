@@ -103,6 +103,21 @@ OpenScene read_file(const std::filesystem::path& file, const std::vector<std::st
   return {std::move(document), faults};
 }
 
+/// Where cells come in: the piece behind the inlet where none is written, which must lie within the domain.
+void complete_feed(scene::Scene& scene) {
+  const scene::Feed* const written = scene.domain.feed();
+  if (written == nullptr) return;
+  constexpr double diameters = 2;
+  scene::Feed& feed = *scene.domain.openings->front().cells;
+  if (feed.length == 0) feed.length = diameters * 2 * shape::shape_radius(scene.cell_types[feed.type].shape);
+  const double size = scene.domain.size.x();
+  if (feed.length <= size / 2) return;
+  throw Error(Cause::bad_input, scene.place(feed.pointer),
+              "cells appear within " + number(feed.length * 1e6, 6) + " um behind the inlet, and the domain is " +
+                  number(size * 1e6, 6) + " um long",
+              {"make the domain at least twice as long, or give the cells a length of their own"});
+}
+
 /// The scene with all values. Faults are added; with some, it is what could be read. `former`: what was read with other
 /// bounds, or null.
 ReadScene completed(const OpenScene& open, const NumericsBounds& bounds, Faults& faults,
@@ -110,6 +125,7 @@ ReadScene completed(const OpenScene& open, const NumericsBounds& bounds, Faults&
   std::optional<NumericsChoice> choice;
   auto document = std::make_shared<json::Document>(open.filled_in(bounds, choice));
   ReadScene read{scene::read_scene(std::move(document), faults), std::move(choice)};
+  if (faults.empty()) faults.attempt([&] { complete_feed(read.scene); });
   if (faults.empty()) open.build_walls(read.scene, faults);
   if (faults.empty()) {
     const bool same = former != nullptr && former->scene.domain.nodes == read.scene.domain.nodes;

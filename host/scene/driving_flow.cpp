@@ -66,7 +66,7 @@ bool has_walls(const Domain& domain) { return !domain.periodic[1] || domain.is_d
 double wall_distance(const Domain& domain) { return domain.across(domain.periodic[1] && domain.is_duct() ? 2 : 1); }
 
 Vector unheld(Vector force, const Domain& domain) {
-  for (std::size_t axis = 0; axis < domain.periodic.size(); ++axis) {
+  for (std::size_t axis = 1; axis < domain.periodic.size(); ++axis) {  // an opening holds nothing
     if (!domain.periodic[axis]) force[axis] = 0;
   }
   return force;
@@ -97,7 +97,7 @@ double mean_shear_rate(const Stage& stage, const Scene& scene) {
 }
 
 bool knows_developed_flow(const Stage& stage, const Scene& scene) {
-  if (scene.domain.has_shapes()) return false;
+  if (scene.domain.has_shapes() || scene.domain.is_open()) return false;
   return !scene.domain.is_duct() || (!stage.oscillates() && scene.fluid.layers.empty());
 }
 

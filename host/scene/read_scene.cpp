@@ -103,7 +103,7 @@ void check_duct(const SceneFields& fields, const Scene& scene) {
     });
   }
   for (const Stage& stage : scene.stages) {
-    if (stage.start != WallStart::developed || knows_developed_flow(stage, scene)) continue;
+    if (stage.start != WallStart::developed || scene.domain.is_open() || knows_developed_flow(stage, scene)) continue;
     const char* const unknown = stage.oscillates()            ? "an oscillation settles to"
                                 : !scene.fluid.layers.empty() ? "layers settle to"
                                                               : "develops";
@@ -120,7 +120,7 @@ void read_domain(const SceneFields& fields, Domain& domain) {
   domain.nodes.assign(dimension, 0);
   domain.size = Vector::filled(dimension, std::numeric_limits<double>::quiet_NaN());
   domain.size = fields.quantities("/domain/size", "m", range::length, dimension);
-  for (const int axis : {1, 2}) fields.attempt([&] { read_ends(fields, domain, axis); });
+  for (const int axis : {0, 1, 2}) fields.attempt([&] { read_ends(fields, domain, axis); });
   fields.attempt([&] {
     domain.nodes = read_nodes(fields, domain);
     if (domain.node_count() > static_cast<double>(most_nodes)) {
@@ -376,6 +376,7 @@ Scene read_scene(std::shared_ptr<const json::Document> document, Faults& faults)
   part([&] { scene.fluid = read_fluid(fields, scene.domain); });
   part([&] { scene.numerics = read_numerics(fields); });
   part([&] { scene.cell_types = read_cell_types(fields, scene.fluid.viscosity, scene.domain); });
+  part([&] { read_openings(fields, scene.cell_types, scene.domain); });
   part([&] { scene.cells = read_cells(fields, scene.cell_types, scene.domain, scene.packings); });
   part([&] { check_layers(fields, scene); });
   part([&] { scene.interactions = read_interactions(fields, scene.cell_types, scene.domain); });
@@ -383,6 +384,7 @@ Scene read_scene(std::shared_ptr<const json::Document> document, Faults& faults)
   part([&] { scene.output = read_output(fields, scene.stages); });
   part([&] { scene.output.field_storage = read_field_storage(fields, scene.domain); });
   part([&] { check_duct(fields, scene); });
+  part([&] { check_openings(fields, scene); });
   part([&] { scene.at_rest = read_at_rest(fields); });
   part([&] { scene.equilibrium = read_equilibrium(fields); });
   part([&] { scene.checks = read_checks(fields); });

@@ -49,15 +49,15 @@ struct Feed {
   int type;                  ///< index into Scene::cell_types
   double hematocrit;         ///< cell volume that comes in over all volume that comes in: a discharge hematocrit
   std::uint32_t seed;        ///< of places and angles
-  double length;             ///< m, of the piece behind the opening in which they appear
+  double length;             ///< m, of the piece behind the opening in which they appear; 0: not written
   int first = 0, count = 0;  ///< they are Scene::cells[first] ... [first + count - 1], in the order in which they come
   std::string pointer;
 };
 
 /// What an end of the domain along x is kept at: a pressure or a mean velocity.
 struct Opening {
-  std::optional<double> mean_velocity;  ///< m/s into the domain, over the open part of its end
-  std::optional<double> pressure;       ///< Pa
+  std::optional<double> mean_velocity = {};  ///< m/s into the domain, over the open part of its end
+  std::optional<double> pressure = {};       ///< Pa
   std::optional<Feed> cells = {};
   std::string pointer;
 };
@@ -97,6 +97,10 @@ struct Domain {
     if (has_shapes()) return region_content;
     return size.product();
   }
+  /// Whether fluid goes through the ends along x; `openings` may be wrong still.
+  [[nodiscard]] bool is_open() const { return !periodic[0]; }
+  /// The cells that come in; null: none do.
+  [[nodiscard]] const Feed* feed() const { return openings && (*openings)[0].cells ? &*(*openings)[0].cells : nullptr; }
   [[nodiscard]] bool has_shapes() const { return within || !obstacles.empty(); }
   template <int D>
   [[nodiscard]] const core::RegionPointer<D>& region() const {

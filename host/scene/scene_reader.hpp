@@ -37,6 +37,7 @@ inline constexpr AllowedRange viscosity{1e-9, 1e6, 1e-5, 0.5, "cP"};            
 inline constexpr AllowedRange shear_rate{-1e9, 1e9, -1e7, 1e7, "1/s"};              ///< 1/s
 inline constexpr AllowedRange rate{1e-12, 1e9, 1e-12, 1e7, "1/s"};                  ///< 1/s
 inline constexpr AllowedRange velocity{-1e6, 1e6, -0.5, 0.5, "mm/s"};               ///< m/s
+inline constexpr AllowedRange pressure{-1e9, 1e9, -1e6, 1e6, "Pa"};                 ///< Pa
 inline constexpr AllowedRange force_density{-1e15, 1e15, -1e12, 1e12, "N/m3"};      ///< N/m3
 inline constexpr AllowedRange frequency{1e-9, 1e9, 1e-6, 1e6, "Hz"};                ///< Hz
 inline constexpr AllowedRange angle{-1e3, 1e3, -7.0, 7.0, "deg"};                   ///< rad; 7: just above a turn
@@ -160,6 +161,10 @@ inline bool is_known(const Domain& domain) { return domain.size.is_finite() && d
 /// Shapes that the fluid lies within and obstacles; which of the axes y and z are periodic then. The domain's size and
 /// nodes are read before.
 void read_wall_shapes(const SceneFields& fields, Domain& domain);
+/// What the ends along x are kept at, where domain.x has any.
+void read_openings(const SceneFields& fields, const std::vector<CellType>& types, Domain& domain);
+/// Refuses what there is no way to have between openings.
+void check_openings(const SceneFields& fields, const Scene& scene);
 std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity, const Domain& domain);
 /// Triangles with which the nodes of a surface lie about so far apart, m: 20 n^2. Not of a mesh, whose file has them.
 int triangles_about(const Shape& shape, double spacing);

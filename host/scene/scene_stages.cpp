@@ -58,8 +58,8 @@ void check_until(const SceneFields& fields, const Stage& stage, const Scene& sce
 /// Faults that the schema cannot see because they lie between the keys of a stage.
 void check_stage(const SceneFields& fields, const Stage& stage, const Scene& scene) {
   const auto& pointer = stage.pointer;
-  const bool flows =
-      walls_move(stage) || stage.pressure_gradient.x() != 0.0 || stage.mean_velocity || stage.oscillates();
+  const bool flows = scene.domain.is_open() || walls_move(stage) || stage.pressure_gradient.x() != 0.0 ||
+                     stage.mean_velocity || stage.oscillates();
   if (fields.has(pointer + "/walls") && fields.has(pointer + "/shear_rate")) {
     fields.refuse_key(pointer + "/walls", "walls and shear_rate both say how the walls move; leave one of them out");
   }

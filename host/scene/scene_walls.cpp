@@ -1,4 +1,4 @@
-// Shapes of walls: what the scene says of them.
+// Shapes of walls, and openings: what the scene says of them.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "driving_flow.hpp"
 #include "json/json_pointer.hpp"
 #include "scene_reader.hpp"
 
@@ -226,7 +227,96 @@ class ShapeReader {
   const Domain& domain_;
 };
 
+Feed read_feed(const SceneFields& fields, const std::string& pointer, const std::vector<CellType>& types) {
+  return {.type = fields.cell_type(pointer + "/type", types),
+          .hematocrit = fields.value<double>(pointer + "/hematocrit"),
+          .seed = fields.value_or(pointer + "/seed", std::uint32_t{1}),
+          .length = fields.quantity_or(pointer + "/length", "m", range::length, 0),
+          .pointer = pointer};
+}
+
+Opening read_inlet(const SceneFields& fields, const std::vector<CellType>& types) {
+  Opening inlet{.pointer = "/domain/x/lower/inlet"};
+  const std::string velocity = inlet.pointer + "/mean_velocity", pressure = inlet.pointer + "/pressure",
+                    cells = inlet.pointer + "/cells";
+  const bool by_velocity = fields.has(velocity);
+  if (by_velocity == fields.has(pressure)) {
+    fields.refuse(inlet.pointer, by_velocity ? "an inlet is kept at a mean velocity or at a pressure, not at both\n"
+                                               "leave one of the two out"
+                                             : "this inlet does not say what it is kept at\ngive mean_velocity (such "
+                                               "as \"1 mm/s\") or pressure (such as \"10 Pa\")");
+  }
+  if (by_velocity) {
+    inlet.mean_velocity = fields.quantity(velocity, "m/s", range::velocity);
+    fields.attempt([&] {
+      if (*inlet.mean_velocity <= 0)
+        fields.refuse(velocity,
+                      "fluid comes in at an inlet: its mean velocity is above 0\nturn the domain round for the other "
+                      "way, or give the inlet a pressure");
+    });
+  } else {
+    inlet.pressure = fields.quantity(pressure, "Pa", range::pressure);
+  }
+  fields.attempt([&] {
+    if (!fields.has(cells)) return;
+    if (!by_velocity)
+      fields.refuse_key(cells,
+                        "cells come in with a mean velocity, and this inlet has a pressure\n"
+                        "give mean_velocity in place of pressure, or leave the cells out");
+    inlet.cells = read_feed(fields, cells, types);
+  });
+  return inlet;
+}
+
 }  // namespace
+
+void read_openings(const SceneFields& fields, const std::vector<CellType>& types, Domain& domain) {
+  if (!domain.is_open()) return;
+  const std::string outlet = "/domain/x/upper/outlet";
+  Opening upper{.pressure = fields.quantity(outlet + "/pressure", "Pa", range::pressure), .pointer = outlet};
+  domain.openings = {read_inlet(fields, types), std::move(upper)};
+}
+
+void check_openings(const SceneFields& fields, const Scene& scene) {
+  if (!scene.domain.is_open()) return;
+  const auto refuse_key = [&](const std::string& key, const std::string& problem) {
+    fields.attempt([&] {
+      if (fields.has(key)) fields.refuse_key(key, problem);
+    });
+  };
+  refuse_key("/fluid/layers", "the flow that comes in through an opening knows of no layers\nleave the layers out");
+  fields.attempt([&] {
+    if (scene.fluid.body_force.x() == 0) return;
+    fields.refuse("/fluid/body_force/0",
+                  "between openings pressure and mean velocity drive the flow along x\nlet this be 0");
+  });
+  fields.attempt([&] {
+    if (!scene.domain.openings || !scene.domain.openings->front().pressure || has_walls(scene.domain)) return;
+    fields.refuse("/domain/x/lower/inlet/pressure",
+                  "between two pressures a fluid without walls has nothing that could hold it\n"
+                  "close y, or give the inlet a mean_velocity");
+  });
+  for (const Stage& stage : scene.stages) {
+    const std::string drives =
+        "between openings their pressures or velocity drive the flow, in all stages\nleave this "
+        "out, and give domain.x.lower.inlet what is wanted";
+    for (const char* key : {"pressure_gradient", "mean_velocity"}) refuse_key(stage.pointer + '/' + key, drives);
+    refuse_key(stage.pointer + "/oscillation",
+               "openings do not oscillate, and neither does what is between them\n"
+               "leave this out");
+    fields.attempt([&] {
+      if (stage.start == WallStart::developed)
+        fields.refuse(stage.pointer + "/start",
+                      "between openings no flow is known to begin with\nleave start out, and let the flow come to be");
+    });
+    fields.attempt([&] {
+      if (!scene.domain.feed() || stage.duration || !fields.settled(stage.pointer)) return;
+      fields.refuse(stage.pointer,
+                    "cells come in, and how many can is not known of a stage that has no duration\ngive duration "
+                    "(such as \"2 s\"), beside strain or in its place");
+    });
+  }
+}
 
 void read_wall_shapes(const SceneFields& fields, Domain& domain) {
   const ShapeReader reader(fields, domain);
