@@ -48,13 +48,16 @@ void add_type(core::Surfaces& cells, const scene::CellType& type, double spacing
   cells.types.push_back(std::make_shared<const core::RestSurface>(rest_surface(type, spacing)));
 }
 
-/// The cell types of a scene on a lattice of this spacing, and no cell yet.
+}  // namespace
+
 template <int D>
 core::Cells<D> without_cells(const scene::Scene& scene, double spacing) {
   core::Cells<D> cells;
   for (const scene::CellType& type : scene.cell_types) add_type(cells, type, spacing);
   return cells;
 }
+template core::Membranes without_cells<2>(const scene::Scene&, double);
+template core::Surfaces without_cells<3>(const scene::Scene&, double);
 
 // Lattice nodes are centres of unit squares and cubes, so the first lies half a spacing from the domain's edges.
 void add_placed(core::Membranes& membranes, const scene::CellPlacement& cell, double spacing) {
@@ -64,6 +67,15 @@ void add_placed(core::Surfaces& surfaces, const scene::CellPlacement& cell, doub
   const core::Vec<3> center = (cell.center.in<3>() / spacing).array() - 0.5;
   core::add_cell(surfaces, cell.type, center, shape::rotation_of(cell));
 }
+
+bool encloses(const core::Membranes& membranes, int cell, const core::Vec<2>& place) {
+  return core::depth_inside(membranes, membranes.cells[cell], place) > 0;
+}
+bool encloses(const core::Surfaces& surfaces, int cell, const core::Vec<3>& place) {
+  return core::encloses(surfaces.type_of(cell).mesh, surfaces.nodes(cell), place);
+}
+
+namespace {
 
 /// Room for the scene's cells, and none of them yet.
 template <int D>
@@ -78,16 +90,8 @@ template <int D>
 core::Cells<D> all_cells(const scene::Scene& scene, double spacing) {
   require_memory(membrane_memory(scene), "placing the cells");
   core::Cells<D> cells = room_for_cells<D>(scene, spacing);
-  for (const scene::CellPlacement& cell : scene.cells) add_placed(cells, cell, spacing);
+  for (const scene::CellPlacement& cell : scene.placed()) add_placed(cells, cell, spacing);
   return cells;
-}
-
-/// Whether a place lies in a cell.
-bool encloses(const core::Membranes& membranes, int cell, const core::Vec<2>& place) {
-  return core::depth_inside(membranes, membranes.cells[cell], place) > 0;
-}
-bool encloses(const core::Surfaces& surfaces, int cell, const core::Vec<3>& place) {
-  return core::encloses(surfaces.type_of(cell).mesh, surfaces.nodes(cell), place);
 }
 
 /// Refuses cells that stick through walls, are longer than a period, or cross each other: outlines themselves, too, and
@@ -251,7 +255,7 @@ void require_room(const scene::Scene& scene) {
   std::vector<double> enclosed;
   for (const scene::CellType& type : scene.cell_types) enclosed.push_back(shape::enclosed_by(type));
   double covered = 0;
-  for (const scene::CellPlacement& cell : scene.cells) covered += enclosed[cell.type];
+  for (const scene::CellPlacement& cell : scene.placed()) covered += enclosed[cell.type];
   const double there = scene.domain.content();
   if (covered <= there) return;
   const auto measured = [&words = scene.domain.words()](double content) {
@@ -266,7 +270,7 @@ void require_room(const scene::Scene& scene) {
 /// Of many cells that lie on top of each other two are found before memory is asked for all of them.
 void require_distance(const scene::Scene& scene) {
   constexpr std::size_t many = 10'000;
-  if (scene.cells.size() < many) return;
+  if (scene.cells.size() < many || scene.fed > 0) return;
   const auto pair = shape::find_crowded_pair(scene);
   if (!pair) return;
   const auto name = [&](int cell) {
@@ -290,11 +294,11 @@ void try_in_strips(const scene::Scene& scene, double spacing, std::size_t of_str
   }
   const double period = domain.period(1);
   std::vector<double> height;
-  for (const scene::CellPlacement& cell : scene.cells) {
+  for (const scene::CellPlacement& cell : scene.placed()) {
     const double y = cell.center.y() / spacing;
     height.push_back(period > 0 ? y - std::floor(y / period) * period : y);
   }
-  std::vector<int> order(scene.cells.size());
+  std::vector<int> order(scene.placed().size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(),
             [&](int a, int b) { return std::pair(height[a], a) < std::pair(height[b], b); });
@@ -366,7 +370,7 @@ template core::Surfaces make_known_cells<3>(const scene::Scene&, const std::func
 void try_cells(const scene::Scene& scene, std::size_t of_strip) {
   if (scene.domain.dimension() == 3) {
     make_cells<3>(scene);
-  } else if (scene.cells.size() > of_strip) {
+  } else if (scene.placed().size() > of_strip) {
     try_in_strips(scene, scene::lattice_spacing(scene), of_strip);
   } else {
     make_cells<2>(scene);

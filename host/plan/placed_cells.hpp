@@ -9,9 +9,20 @@
 
 namespace rouleau::plan {
 
+/// The cell types of a scene of D dimensions on a lattice of this spacing, m, and no cell yet.
+template <int D>
+core::Cells<D> without_cells(const scene::Scene& scene, double spacing);
+/// Adds a cell of one of these types, unchecked.
+void add_placed(core::Membranes& membranes, const scene::CellPlacement& cell, double spacing);
+void add_placed(core::Surfaces& surfaces, const scene::CellPlacement& cell, double spacing);
+/// Whether a place on the lattice lies in a cell.
+bool encloses(const core::Membranes& membranes, int cell, const core::Vec<2>& place);
+bool encloses(const core::Surfaces& surfaces, int cell, const core::Vec<3>& place);
+
 /// Membranes of the cells of a scene of D dimensions on a lattice of the given spacing (m). Throws Error(bad_input)
 /// with the place of the entry in the scene when a cell sticks through a wall or overlaps another cell (over periodic
 /// images), surfaces where a node of one lies inside the other, or when an outline crosses itself.
+/// Of the cells that are there at the beginning.
 template <int D>
 core::Cells<D> make_cells(const scene::Scene& scene, double spacing);
 /// The same on the scene's own lattice.

@@ -304,10 +304,12 @@ void Checkpoints::write(const plan::Plan& plan, int threads, const RunState& sta
   Json saved_membranes = save(of_cells, solver.cells()), saved_solver = save(writer_.get(), solver);
   if (to_ == nullptr) return;
   writer_->facts(checkpoint_facts(plan, state, threads));
-  writer_->state({{"run", state},
-                  {"membranes", std::move(saved_membranes)},
-                  {"solver", std::move(saved_solver)},
-                  {"directory", to_->mark()}});
+  Json saved{{"run", state},
+             {"membranes", std::move(saved_membranes)},
+             {"solver", std::move(saved_solver)},
+             {"directory", to_->mark()}};
+  if (plan.scene->domain.openings) saved["traffic"] = state.traffic;
+  writer_->state(saved);
   writer_->finish();
 }
 
@@ -329,6 +331,7 @@ Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, c
   try {
     const Json saved = reader->state();
     saved.at("run").get_to(state);
+    if (plan.scene->domain.openings) saved.at("traffic").get_to(state.traffic);
     require(state.fits(plan, cells), *reader, "counts of another scene");
     if (take_part) take_part(read_boxes<D>(*reader, cells));
     restore_cells(*reader, saved.at("membranes"), cells);

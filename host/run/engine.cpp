@@ -1,5 +1,7 @@
 #include "engine.hpp"
 
+#include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "plan/placed_cells.hpp"
@@ -28,10 +30,32 @@ auto Engine<D>::prepare(int stage, const Boxes& boxes, std::vector<int> owner) c
 }
 
 template <int D>
+std::vector<int> Engine<D>::present() const {
+  std::vector<int> there;
+  const core::GhostCells<D>* const ghosts = solver_->ghosts();
+  for (int c = 0; c < cells_.cell_count(); ++c) {
+    if (ghosts != nullptr ? ghosts->owner(c) != core::GhostCells<D>::nobody : cells_.knows(c)) there.push_back(c);
+  }
+  return there;
+}
+
+template <int D>
+std::vector<int> Engine<D>::owners(const Boxes& boxes, const std::vector<int>& there,
+                                   const std::vector<int>& given) const {
+  if (!plan_.scene->domain.openings) return given;
+  std::vector<int> all(boxes.size(), core::GhostCells<D>::nobody);
+  for (const int c : there) {
+    all[c] =
+        c < static_cast<int>(given.size()) ? given[c] : core::GhostCells<D>::owner_by_place(boxes[c], *ranks_.blocks);
+  }
+  return all;
+}
+
+template <int D>
 auto Engine<D>::place_cells(observe::Observer& observer) -> Start {
   const scene::Scene& scene = *plan_.scene;
   if (!plan_.has_cells) return prepare(0, {}, {});
-  if (!ranks_.several()) {
+  if (!ranks_.several() && !scene.domain.openings) {
     cells_ = plan::make_cells<D>(scene);
     observer.begin_with(cells_);
     return prepare(0, {}, {});
@@ -42,8 +66,12 @@ auto Engine<D>::place_cells(observe::Observer& observer) -> Start {
     boxes.push_back(core::box_of<D>(cell, 0));
     observer.begin_with(cell);
   });
-  Start start = prepare(0, boxes, owner_);
-  cells_ = plan::make_known_cells<D>(scene, [&](int cell) { return start.part->knows(cell); });
+  std::vector<int> there(scene.placed().size());
+  std::iota(there.begin(), there.end(), 0);
+  Start start = prepare(0, boxes, owners(boxes, there, owner_));
+  cells_ = plan::make_known_cells<D>(
+      scene, [&](int cell) { return start.part ? start.part->knows(cell) : cell < static_cast<int>(there.size()); });
+  if (!start.part) cells_.keep_only(std::move(there));
   return start;
 }
 
@@ -61,9 +89,11 @@ auto Engine<D>::restore_cells(const std::shared_ptr<const files::CheckpointReade
   TakePart<D> take_part;
   if (ranks_.several() && plan_.has_cells) {
     take_part = [&](const Boxes& boxes) {
-      start = prepare(state.stage, boxes, owner_);
+      start = prepare(state.stage, boxes, owners(boxes, state.traffic.there, owner_));
       start->part->set_parts(cells_);
     };
+  } else if (scene.domain.openings && plan_.has_cells) {
+    take_part = [&](const Boxes&) { cells_.keep_only(state.traffic.there); };
   }
   Restored restored = restore<D>(reader, plan_, domain().block, state, cells_, take_part);
   if (!start) start = prepare(state.stage, {}, {});
@@ -86,9 +116,44 @@ void Engine<D>::begin(Start start) {
 
 template <int D>
 void Engine<D>::begin_stage(int stage) {
-  Start start = prepare(stage, boxes_of_all(), owner_);
+  const Boxes boxes = boxes_of_all();
+  Start start = prepare(stage, boxes, owners(boxes, present(), owner_));
   if (start.part) solver_->cell_tasks()->pass_on(*start.part);
   begin(std::move(start));
+}
+
+template <int D>
+void Engine<D>::change_cells(const std::vector<int>& gone, const std::vector<Arrival>& come) {
+  for (const int c : gone) cells_.largest_step[c] = 0;
+  for (const Arrival& arrival : come) {
+    const core::CellRange& cell = cells_.cells[arrival.cell];
+    for (int k = 0; k < D; ++k) {
+      std::copy_n(arrival.nodes.position[k].begin(), cell.count, cells_.position[k].begin() + cell.first);
+      for (auto* of_nodes : {&cells_.velocity[k], &cells_.force[k]})
+        std::fill_n(of_nodes->begin() + cell.first, cell.count, 0.0);
+    }
+    for (core::ElementState& state : cells_.state)
+      std::fill_n(state.value.begin() + cell.first, cell.count, state.initial);
+  }
+  if (const core::GhostCells<D>* const ghosts = solver_->ghosts()) {
+    Boxes boxes = boxes_of_all();
+    std::vector<int> owner(cells_.cells.size());
+    for (int c = 0; c < cells_.cell_count(); ++c) owner[c] = ghosts->owner(c);
+    for (const int c : gone) owner[c] = core::GhostCells<D>::nobody;
+    for (const Arrival& arrival : come) {
+      boxes[arrival.cell] = core::box_of<D>(arrival.nodes, 0);
+      owner[arrival.cell] = core::GhostCells<D>::owner_by_place(boxes[arrival.cell], *ranks_.blocks);
+    }
+    core::GhostCells<D> part(ranks_, boxes, core::ghost_reach(solver_->setup()), std::move(owner));
+    solver_->cell_tasks()->pass_on(part);
+    solver_->renew_cells(std::move(part));
+    return;
+  }
+  std::vector<int> there = present();
+  std::erase_if(there, [&](int c) { return std::find(gone.begin(), gone.end(), c) != gone.end(); });
+  for (const Arrival& arrival : come) there.push_back(arrival.cell);  // the last that there are
+  cells_.keep_only(std::move(there));
+  solver_->renew_cells({});
 }
 
 template <int D>
@@ -99,7 +164,7 @@ void Engine<D>::cut_again(int stage, long stage_step, const std::vector<double>&
   ranks_.blocks = blocks.get();
   core::AnyFluid<D>& fluid = solver_->fluid();
   fluid.settle();
-  Start start = prepare(stage, boxes, {});
+  Start start = prepare(stage, boxes, owners(boxes, present(), {}));
   start.state = core::SolverState{.populations =
                                       [&](int q) {
                                         std::vector<double> values;

@@ -38,6 +38,13 @@ class Engine {
   void begin(Start start);
   /// The same for another stage, which goes on with cells and fluid of the one before.
   void begin_stage(int stage);
+  /// Between two steps, whose messages have been taken: these cells go, and others come, each with its nodes as it is
+  /// alone.
+  struct Arrival {
+    int cell;
+    Cells nodes;
+  };
+  void change_cells(const std::vector<int>& gone, const std::vector<Arrival>& come);
   /// Between two steps, whose messages have been taken: other blocks for the same state, so many steps after the
   /// stage's start.
   /// `seconds[r]`: what rank r has computed for since all began to measure.
@@ -55,6 +62,11 @@ class Engine {
   [[nodiscard]] Start prepare(int stage, const Boxes& boxes, std::vector<int> owner) const;
   /// None without ranks or cells.
   [[nodiscard]] Boxes boxes_of_all();
+  /// The cells that are there, in their order; the same on all ranks.
+  [[nodiscard]] std::vector<int> present() const;
+  /// Owners for all cells, nobody for those that are not there: who is given, beyond the end by place.
+  [[nodiscard]] std::vector<int> owners(const Boxes& boxes, const std::vector<int>& there,
+                                        const std::vector<int>& given) const;
   /// What this rank computes of the lattice.
   [[nodiscard]] core::Domain<D> domain() const;
 

@@ -41,6 +41,14 @@ class PassCosts {
   std::vector<PassCost> passes_;
 };
 
+/// Cells that come and go through openings.
+struct TrafficState {
+  std::vector<int> there;  ///< in their order
+  int came = 0, left = 0;
+  long next = 0;  ///< step of the run at which to look who comes and goes
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(TrafficState, there, came, left, next)
+};
+
 struct RunState {
   explicit RunState(observe::Observer made) : observer(std::move(made)) {}
 
@@ -59,6 +67,7 @@ struct RunState {
   monitor::EquilibriumWatch equilibrium;
   std::vector<StageEnd> stages;  ///< those that are over
   std::vector<Continuation> resumed;
+  TrafficState traffic;  ///< kept where there are openings
 
   [[nodiscard]] double time_at(const scene::StageSetting& setting) const {
     return time + static_cast<double>(stage_step) * setting.units.time;

@@ -22,6 +22,7 @@
 #include "scene/output_schedule.hpp"
 #include "stage_course.hpp"
 #include "stepper.hpp"
+#include "traffic.hpp"
 
 namespace rouleau::run {
 
@@ -46,6 +47,7 @@ class Simulation final : StepHooks {
         state_(observe::Observer(*plan.scene)),
         engine_(plan, ranks, owner),
         course_(plan, state_),
+        traffic_(plan, engine_, state_),
         progress_(options.quiet || directory == nullptr),
         checkpoints_(scene(), directory),
         summary_(describe(plan, report, options.threads)) {
@@ -142,7 +144,8 @@ class Simulation final : StepHooks {
     while (stage_->ended == Ending::none) {
       stepper_.begin(state_.stage_step);
       stepper_.take(solver().passes(), state_.stage_step, Stepper::never, options_.threads, &state_.costs);
-      if (stage_->ended == Ending::none) cut_again();
+      if (stage_->ended != Ending::none) break;
+      traffic_.found() ? change_cells() : cut_again();
     }
     take_time();
     state_.end_stage(setting(), stage_->ended);
@@ -170,6 +173,13 @@ class Simulation final : StepHooks {
     double sum = 0;
     for (const std::string& pass : solver().passes().names) sum += state_.costs.wall_s(pass);
     return sum;
+  }
+
+  /// All ranks, between two steps, whose messages have been taken: cells come and go.
+  void change_cells() {
+    const auto change = traffic_.take();
+    for (const int c : change.gone) log("cell_left", {{"step", state_.steps}, {"cell", c}});
+    for (const auto& arrival : change.come) log("cell_came", {{"step", state_.steps}, {"cell", arrival.cell}});
   }
 
   /// All ranks, between two steps, whose messages have been taken: other blocks for the same state.
@@ -201,7 +211,7 @@ class Simulation final : StepHooks {
   bool before_forces(long step) override {
     course_.count_to(step);
     solver().end_messages();
-    if (step >= balance_.next()) return false;
+    if (step >= balance_.next() || traffic_.due()) return false;
     stage_->due = next_ending();
     const bool stops = stage_->due == Ending::interrupted || stage_->due == Ending::max_steps;
     const bool ends = stage_->due != Ending::none && (course_.is_last() || stops);
@@ -246,7 +256,8 @@ class Simulation final : StepHooks {
     }
     course_.look(solver());
     const long check = (step / scene().checks.every_steps + 1) * scene().checks.every_steps;
-    long next = std::min({stage_->cells.next(step), stage_->fields.next(step), check, course_.next(), balance_.next()});
+    long next = std::min(
+        {stage_->cells.next(step), stage_->fields.next(step), check, course_.next(), balance_.next(), traffic_.next()});
     if (options_.max_steps >= 0) next = std::min(next, options_.max_steps - state_.steps_before);
     stepper_.attend_next(next);
     stage_->ended = stage_->due;
@@ -343,6 +354,7 @@ class Simulation final : StepHooks {
   RunState state_;
   Engine<D> engine_;
   StageCourse course_;
+  Traffic<D> traffic_;
   Progress progress_;
   Checkpoints checkpoints_;
   Summary summary_;

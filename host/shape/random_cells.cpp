@@ -89,7 +89,12 @@ void pack_cells(scene::Scene& scene, const PackingWatch& watch) {
                                   " um long, but the domain is " + number(across * 1e6) +
                                   " um from corner to corner\ntake a smaller cell or a larger domain");
   }
+  // What comes in later is not in the way.
+  const std::vector<scene::CellPlacement> fed(scene.cells.end() - static_cast<std::ptrdiff_t>(scene.fed),
+                                              scene.cells.end());
+  scene.cells.resize(scene.placed().size());
   const auto shortfall = pack(scene.domain, scene.cell_types, scene.packings, scene.cells, watch);
+  scene.cells.insert(scene.cells.end(), fed.begin(), fed.end());
   if (!shortfall) return;
   const scene::RandomPacking& packing = scene.packings[shortfall->packing];
   scene::SceneFields(*scene.document)

@@ -14,6 +14,7 @@
 #include "run/run_state.hpp"
 #include "run/stage_course.hpp"
 #include "run/stepper.hpp"
+#include "run/traffic.hpp"
 
 namespace rouleau::python {
 
@@ -34,7 +35,8 @@ class SimulationOf final : public Simulation, run::StepHooks {
       : Simulation(std::move(read), std::move(catalog)),
         state_(observe::Observer(scene())),
         engine_(plan_),
-        course_(plan_, state_) {
+        course_(plan_, state_),
+        traffic_(plan_, engine_, state_) {
     engine_.begin(engine_.place_cells(state_.observer));
     begin_stage();
   }
@@ -49,6 +51,7 @@ class SimulationOf final : public Simulation, run::StepHooks {
       whole_ = true;
       taken += state_.stage_step - before;
       if (ending_ != run::Ending::none) next_stage();
+      if (traffic_.found()) change_cells();
     }
     return taken;
   }
@@ -175,6 +178,11 @@ class SimulationOf final : public Simulation, run::StepHooks {
     begin_stage();
   }
 
+  void change_cells() {
+    traffic_.take();
+    stepper_.begin(state_.stage_step);
+  }
+
   [[nodiscard]] bool adds_forces() const override { return add_force_ != nullptr; }
   void add_forces() override { add_force_(); }
   [[nodiscard]] bool wants_a_look() const override {
@@ -183,6 +191,7 @@ class SimulationOf final : public Simulation, run::StepHooks {
 
   bool before_forces(long step) override {
     course_.count_to(step);
+    if (traffic_.due()) return false;
     due_ending_ = course_.end(engine_.solver());
     if (due_ending_ != run::Ending::none) remember();
     return true;
@@ -199,7 +208,7 @@ class SimulationOf final : public Simulation, run::StepHooks {
     }
     ending_ = due_ending_;
     course_.look(solver);
-    stepper_.attend_next(std::min((step / every + 1) * every, course_.next()));
+    stepper_.attend_next(std::min({(step / every + 1) * every, course_.next(), traffic_.next()}));
     return ending_ == run::Ending::none;
   }
 
@@ -211,6 +220,7 @@ class SimulationOf final : public Simulation, run::StepHooks {
   run::RunState state_;
   run::Engine<D> engine_;
   run::StageCourse course_;
+  run::Traffic<D> traffic_;
   run::Stepper stepper_{*this};
   std::function<void()> add_force_;
   Remembered remembered_;  ///< before the forces that are known were computed

@@ -1,5 +1,7 @@
 #include "cell_nodes.hpp"
 
+#include <utility>
+
 namespace rouleau::core {
 
 void CellNodes::reserve(std::size_t cell_count, std::size_t nodes, int dimension) {
@@ -7,6 +9,12 @@ void CellNodes::reserve(std::size_t cell_count, std::size_t nodes, int dimension
   for (NodeArrays* arrays : {&position, &force, &velocity}) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(dimension); ++k) (*arrays)[k].reserve(nodes);
   }
+}
+
+void CellNodes::keep_only(std::vector<int> there) {
+  part.assign(cells.size(), {.owned = false, .known = false, .reaching = false, .inside = false});
+  for (const int c : there) part[c] = {.owned = true, .known = true, .reaching = true, .inside = false};
+  known = std::move(there);
 }
 
 void CellNodes::resize_to_positions() {

@@ -103,7 +103,8 @@ struct CellNodes {
   std::vector<ElementState> state;    ///< what laws and the method remember; empty where none does
   ContactMemory contacts;             ///< what interactions between cells remember
   ContactMemory wall_contacts;        ///< what interactions with walls remember
-  std::vector<CellPart> part;         ///< of this rank in each cell; empty: all of every cell
+  std::vector<CellPart> part;         ///< of this rank in each cell, none of one that is not there; empty: all of
+                                      ///< every cell
   std::vector<int> known;             ///< the cells that it knows, if it has parts
 
   [[nodiscard]] int node_count() const { return static_cast<int>(position[0].size()); }
@@ -138,6 +139,8 @@ struct CellNodes {
     return {first(share.begin), first(share.end)};
   }
 
+  /// The only rank has these cells, in their order, and no others: those have not come yet, or have gone.
+  void keep_only(std::vector<int> there);
   /// Makes room for so many, without taking memory for it before they are there.
   void reserve(std::size_t cell_count, std::size_t nodes, int dimension);
   /// Nodes that positions have been added of exert no force and have not moved.

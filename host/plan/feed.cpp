@@ -1,0 +1,153 @@
+#include "feed.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "base/text.hpp"
+#include "core/contact/wall_gap.hpp"
+#include "core/coupling/kernel.hpp"
+#include "core/fluid/openings/section.hpp"
+#include "placed_cells.hpp"
+#include "scene/lattice.hpp"
+#include "scene/scene_reader.hpp"
+#include "shape/extent.hpp"
+
+namespace rouleau::plan {
+namespace {
+
+constexpr double kept_apart = 2;    // spacings, from other cells and from walls
+constexpr double room_to_move = 3;  // spacings, beyond the reach of a stencil: in some steps and a half
+constexpr int most_tries = 32;      // at a time
+
+double duration_of(const scene::Scene& scene) {
+  double sum = 0;
+  for (const scene::Stage& stage : scene.stages) sum += stage.duration.value_or(0);
+  return sum;
+}
+
+/// How many cells come in each second, where the inlet has so many nodes.
+double arrivals(const scene::Scene& scene, const scene::Feed& feed, double nodes) {
+  const double area = nodes * std::pow(scene::lattice_spacing(scene), scene.domain.dimension() - 1);
+  return feed.hematocrit * *scene.domain.openings->front().mean_velocity * area /
+         shape::enclosed_by(scene.cell_types[feed.type]);
+}
+
+}  // namespace
+
+void add_fed_cells(scene::Scene& scene) {
+  if (scene.domain.feed() == nullptr) return;
+  scene::Feed& feed = *scene.domain.openings->front().cells;
+  const double nodes = scene.domain.node_count() / scene.domain.nodes[0];  // all of the end is open at most
+  const double most = std::ceil(arrivals(scene, feed, nodes) * duration_of(scene)) + 1;
+  const scene::SceneFields fields(*scene.document);
+  if (!(most <= static_cast<double>(scene::most_cells))) {
+    fields.refuse(feed.pointer, "about " + number(most, 3) + " cells would come in during the stages; at most " +
+                                    std::to_string(scene::most_cells) +
+                                    " can be computed\nmake the stages shorter, or the hematocrit smaller");
+  }
+  feed.first = static_cast<int>(scene.cells.size());
+  feed.count = static_cast<int>(most);
+  fields.require_room(scene.cells.size(), static_cast<std::size_t>(feed.count), feed.pointer);
+  scene.fed = static_cast<std::size_t>(feed.count);
+  scene.cells.insert(scene.cells.end(), scene.fed, {feed.type, 0.5 * scene.domain.size, 0, feed.pointer});
+  scene::check_membrane_nodes(scene);
+}
+
+template <int D>
+Inflow<D>::Inflow(const scene::Scene& scene, const core::BasicSolverSetup<D>& setup)
+    : feed_(scene.domain.feed()),
+      none_(without_cells<D>(scene, scene::lattice_spacing(scene))),
+      domain_(scene::lattice_domain<D>(scene)),
+      region_(setup.region),
+      origin_(0 * scene.domain.size),
+      spacing_(scene::lattice_spacing(scene)),
+      margin_(core::stencil_above(setup.kernel) + room_to_move) {
+  if (feed_ == nullptr) return;
+  const core::Section section = core::section_at(domain_, setup.solid.get(), setup.walls, 0);
+  double sum = 0, nodes = 0;
+  for (std::size_t row = 0; row < section.driven.size(); ++row) {
+    flux_.push_back(sum += std::max(0.0, section.velocity(row, 1)));
+    nodes += section.driven[row] != 0 ? 1 : 0;
+  }
+  cells_per_second_ = arrivals(scene, *feed_, nodes);
+}
+
+template <int D>
+int Inflow<D>::due(double time) const {
+  return feed_ == nullptr ? 0 : std::min(feed_->count, static_cast<int>(time * cells_per_second_ + 0.5));
+}
+
+template <int D>
+std::vector<core::Cells<D>> Inflow<D>::places(int cell, long step) const {
+  const auto of_step = static_cast<std::uint64_t>(step);
+  std::seed_seq seeds{feed_->seed, static_cast<std::uint32_t>(cell), static_cast<std::uint32_t>(of_step),
+                      static_cast<std::uint32_t>(of_step >> 32)};
+  shape::RandomNumbers numbers(seeds);
+  std::vector<core::Cells<D>> found;
+  for (int i = 0; i < most_tries; ++i) {
+    scene::CellPlacement placement{feed_->type, origin_, shape::radians(numbers.angle()), feed_->pointer};
+    if constexpr (D == 3) {
+      const double along = numbers.either_side(1), around = shape::radians(numbers.angle());
+      const double across = std::sqrt(1 - along * along);
+      placement.axis = Eigen::Vector3d(across * std::cos(around), along, across * std::sin(around));
+    }
+    core::Cells<D> cell_there = none_;
+    add_placed(cell_there, placement, spacing_);
+    core::Vec<D> move = way_in(core::box_of<D>(cell_there, 0), numbers);
+    for (int k = 0; k < D; ++k) {
+      for (double& place : cell_there.position[k]) place += move[k];
+    }
+    if (fits(cell_there)) found.push_back(std::move(cell_there));
+  }
+  return found;
+}
+
+/// From the origin, where a cell with this box lies half a spacing below it, to where it comes in.
+template <int D>
+core::Vec<D> Inflow<D>::way_in(const core::BoundingBox<D>& box, shape::RandomNumbers& numbers) const {
+  const double room = feed_->length / spacing_ - 0.5 - lowest() - (box.most[0] - box.least[0]);
+  const auto drawn = std::upper_bound(flux_.begin(), flux_.end() - 1, numbers.below_one() * flux_.back());
+  const auto row = core::row_of(domain_.block, static_cast<int>(drawn - flux_.begin()));
+  core::Vec<D> move;
+  move[0] = lowest() - box.least[0] + numbers.below_one() * std::max(0.0, room);
+  for (int k = 1; k < D; ++k) move[k] = row[k - 1] + numbers.below_one();
+  return move;
+}
+
+template <int D>
+bool Inflow<D>::fits(const core::Cells<D>& cell) const {
+  const core::BoundingBox<D> box = core::box_of<D>(cell, 0);
+  if (!(box.least[0] >= lowest() && box.most[0] < highest())) return false;
+  return !(core::wall_gap(cell, cell.cells[0], domain_, region_.get()) < kept_apart);
+}
+
+template <int D>
+bool Inflow<D>::is_apart(const core::Cells<D>& cell, const core::Cells<D>& others, int other) const {
+  const core::BoundingBox<D> box = core::box_of<D>(cell, 0), its = core::box_of<D>(others, other);
+  if (core::distance_along_axes(box, its, domain_) > kept_apart) return true;
+  core::Vec<D> move;  // to the image of the other one that is nearest
+  for (int k = 0; k < D; ++k) {
+    const double period = domain_.period(k), between = box.least[k] + box.most[k] - its.least[k] - its.most[k];
+    move[k] = period > 0 ? period * std::round(between / 2 / period) : 0;
+  }
+  const auto node = [](const core::Cells<D>& of, int i) {
+    core::Vec<D> place;
+    for (int k = 0; k < D; ++k) place[k] = of.position[k][i];
+    return place;
+  };
+  const core::CellRange& range = others.cells[other];
+  for (int i = range.first; i < range.end(); ++i) {
+    const core::Vec<D> place = node(others, i) + move;
+    for (int j = 0; j < cell.node_count(); ++j) {
+      if ((node(cell, j) - place).squaredNorm() < kept_apart * kept_apart) return false;
+    }
+  }
+  return !encloses(cell, 0, node(others, range.first) + move) && !encloses(others, other, node(cell, 0) - move);
+}
+
+template class Inflow<2>;
+template class Inflow<3>;
+
+}  // namespace rouleau::plan

@@ -1,0 +1,58 @@
+// Cells that come in through an inlet: how many, when, and where each tries to appear.
+#pragma once
+
+#include <vector>
+
+#include "core/domain/bounding_box.hpp"
+#include "core/membrane/membranes.hpp"
+#include "core/solver/solver_setup.hpp"
+#include "core/surface/surfaces.hpp"
+#include "scene/scene.hpp"
+#include "shape/rigid_body.hpp"
+
+namespace rouleau::plan {
+
+/// Adds an entry to scene.cells for each cell that can come in while the stages last. They are not placed: their places
+/// stand for none. Throws Error(bad_input) where they are more than can be computed.
+void add_fed_cells(scene::Scene& scene);
+
+/// Where cells come in, and how close to the openings they may be. They are mixed well before they come: a cell's
+/// middle crosses the inlet anywhere, as often as the developed flow brings fluid there, at any angle.
+template <int D>
+class Inflow {
+ public:
+  /// `scene` has openings, and outlives it; `setup` of any of its stages.
+  Inflow(const scene::Scene& scene, const core::BasicSolverSetup<D>& setup);
+
+  /// How many cells have come in after so long, s: their volume is the hematocrit's share of all that came in.
+  [[nodiscard]] int due(double time) const;
+  /// No stencil of a node that lies within these reaches beyond an opening, not after the next steps either; spacings.
+  [[nodiscard]] double lowest() const { return margin_ - 0.5; }
+  [[nodiscard]] double highest() const { return domain_.size[0] - 0.5 - margin_; }
+
+  /// Places for cell `cell` to appear at `step`, in the order in which they are to be tried: its nodes, alone. They
+  /// follow from the scene's seed, the cell and the step.
+  [[nodiscard]] std::vector<core::Cells<D>> places(int cell, long step) const;
+  /// Whether it keeps its distance from a cell of others.
+  [[nodiscard]] bool is_apart(const core::Cells<D>& cell, const core::Cells<D>& others, int other) const;
+
+ private:
+  [[nodiscard]] core::Vec<D> way_in(const core::BoundingBox<D>& box, shape::RandomNumbers& numbers) const;
+  /// Whether it keeps its distance from walls.
+  [[nodiscard]] bool fits(const core::Cells<D>& cell) const;
+
+  const scene::Feed* feed_;  ///< null: no cells come in
+  core::Cells<D> none_;      ///< but for the cell types
+  core::Domain<D> domain_;
+  core::RegionPointer<D> region_;
+  scene::Vector origin_;
+  double spacing_;               ///< m
+  double margin_;                ///< spacings
+  double cells_per_second_ = 0;  ///< of the feed
+  std::vector<double> flux_;     ///< sum up to and with each row of the inlet
+};
+
+extern template class Inflow<2>;
+extern template class Inflow<3>;
+
+}  // namespace rouleau::plan

@@ -1,0 +1,103 @@
+#include "traffic.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace rouleau::run {
+
+template <int D>
+Traffic<D>::Traffic(const plan::Plan& plan, Engine<D>& engine, RunState& state)
+    : plan_(plan), engine_(engine), state_(state) {
+  if (!is_open()) return;
+  state.traffic.there.resize(plan.scene->placed().size());
+  std::iota(state.traffic.there.begin(), state.traffic.there.end(), 0);
+}
+
+template <int D>
+const plan::Inflow<D>& Traffic<D>::inflow() {
+  if (!inflow_) inflow_.emplace(*plan_.scene, engine_.solver().setup());
+  return *inflow_;
+}
+
+template <int D>
+bool Traffic<D>::due() {
+  TrafficState& traffic = state_.traffic;
+  if (!is_open() || state_.steps < traffic.next) return false;
+  traffic.next = state_.steps + steps_to_next();
+  find_gone();
+  find_come(state_.time_at(plan_.stages[state_.stage]));
+  return change_.any();
+}
+
+template <int D>
+void Traffic<D>::find_gone() {
+  std::vector<int> mine;
+  const auto& cells = engine_.cells();
+  for (const int c : cells.own_cells()) {
+    if (core::box_of<D>(cells, c).most[0] > inflow().highest()) mine.push_back(c);
+  }
+  for (const std::vector<int>& of_rank : core::all_of(engine_.ranks(), std::move(mine)))
+    change_.gone.insert(change_.gone.end(), of_rank.begin(), of_rank.end());
+  std::sort(change_.gone.begin(), change_.gone.end());
+}
+
+template <int D>
+void Traffic<D>::find_come(double time) {
+  const scene::Feed* const feed = plan_.scene->domain.feed();
+  if (feed == nullptr) return;
+  for (int k = state_.traffic.came; k < inflow().due(time); ++k) {
+    auto nodes = free_place(feed->first + k);
+    if (!nodes) return;  // it waits, and those behind it
+    change_.come.push_back({feed->first + k, *std::move(nodes)});
+  }
+}
+
+template <int D>
+auto Traffic<D>::free_place(int cell) -> std::optional<typename Engine<D>::Cells> {
+  auto places = inflow().places(cell, state_.steps);
+  const auto& cells = engine_.cells();
+  std::vector<char> taken(places.size(), 0);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto is_near = [&](const auto& others, int other) { return !inflow().is_apart(places[i], others, other); };
+    for (const Arrival& other : change_.come) taken[i] = taken[i] != 0 || is_near(other.nodes, 0) ? 1 : 0;
+    for (const int other : cells.own_cells()) taken[i] = taken[i] != 0 || is_near(cells, other) ? 1 : 0;
+  }
+  for (const std::vector<char>& of_rank : core::all_of(engine_.ranks(), taken)) {
+    for (std::size_t i = 0; i < taken.size(); ++i) taken[i] = taken[i] != 0 || of_rank[i] != 0 ? 1 : 0;
+  }
+  const auto free = std::find(taken.begin(), taken.end(), 0);
+  if (free == taken.end()) return std::nullopt;
+  return std::move(places[static_cast<std::size_t>(free - taken.begin())]);
+}
+
+template <int D>
+auto Traffic<D>::take() -> Change {
+  Change change = std::exchange(change_, {});
+  engine_.change_cells(change.gone, change.come);
+  TrafficState& traffic = state_.traffic;
+  std::erase_if(traffic.there, [&](int c) { return std::binary_search(change.gone.begin(), change.gone.end(), c); });
+  for (const Arrival& arrival : change.come) traffic.there.push_back(arrival.cell);
+  traffic.came += static_cast<int>(change.come.size());
+  traffic.left += static_cast<int>(change.gone.size());
+  return change;
+}
+
+template <int D>
+long Traffic<D>::steps_to_next() const {
+  constexpr double room = 1;  // spacings: what cells may move between two looks
+  constexpr double most_steps = 20;
+  double step = 0;
+  for (const core::Opening& opening : *engine_.solver().setup().openings)
+    if (opening.kind == core::Opening::Kind::velocity) step = std::max(step, 2 * std::abs(opening.value));
+  for (const int c : engine_.cells().own_cells()) step = std::max(step, engine_.cells().largest_step[c]);
+  step = core::largest(engine_.ranks(), std::array{step})[0];
+  return static_cast<long>(std::clamp(std::floor(room / step), 1.0, most_steps));
+}
+
+template class Traffic<2>;
+template class Traffic<3>;
+
+}  // namespace rouleau::run

@@ -1,0 +1,57 @@
+// Cells that come in through an inlet and leave through an outlet, while a scene is stepped.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine.hpp"
+#include "plan/feed.hpp"
+#include "run_state.hpp"
+#include "stepper.hpp"
+
+namespace rouleau::run {
+
+/// Who comes and who goes, between two steps: a cell that is due comes as soon as there is room behind the inlet; a
+/// cell that has come near the outlet goes. All ranks ask together, and get the same.
+template <int D>
+class Traffic {
+ public:
+  using Arrival = typename Engine<D>::Arrival;
+  struct Change {
+    std::vector<int> gone;
+    std::vector<Arrival> come;
+    [[nodiscard]] bool any() const { return !gone.empty() || !come.empty(); }
+  };
+
+  /// All outlive it. The state has no cells but those that are placed, until it is restored.
+  Traffic(const plan::Plan& plan, Engine<D>& engine, RunState& state);
+
+  /// Before the forces of a step: whether any come or go, if it is time to look.
+  [[nodiscard]] bool due();
+  /// Whether that was so, and is still to be done.
+  [[nodiscard]] bool found() const { return change_.any(); }
+  /// What due() has found is done.
+  Change take();
+  /// The step of the stage at which it looks again.
+  [[nodiscard]] long next() const { return is_open() ? state_.traffic.next - state_.steps_before : Stepper::never; }
+
+ private:
+  [[nodiscard]] long steps_to_next() const;
+  [[nodiscard]] bool is_open() const { return plan_.scene->domain.openings && plan_.has_cells; }
+  [[nodiscard]] const plan::Inflow<D>& inflow();
+  void find_gone();
+  void find_come(double time);
+  /// The first of these places that is free on all ranks; none: none is.
+  [[nodiscard]] std::optional<typename Engine<D>::Cells> free_place(int cell);
+
+  const plan::Plan& plan_;
+  Engine<D>& engine_;
+  RunState& state_;
+  std::optional<plan::Inflow<D>> inflow_;  ///< made when first asked for
+  Change change_;
+};
+
+extern template class Traffic<2>;
+extern template class Traffic<3>;
+
+}  // namespace rouleau::run
