@@ -1,8 +1,10 @@
 #include "conversions.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "base/text.hpp"
+#include "flow.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
 #include "units/lattice_units.hpp"
@@ -44,7 +46,7 @@ void add_fluid(const scene::Scene& scene, const scene::StageSetting& stage, Rows
   }
 }
 
-void add_drive(const scene::StageSetting& stage, Rows& rows) {
+void add_drive(const scene::Scene& scene, const scene::StageSetting& stage, Rows& rows) {
   const units::LatticeUnits& u = stage.units;
   const auto wall = [&](const char* quantity, double speed) {
     rows.add(quantity, u.to_si(speed, units::dimension::velocity), "m/s", speed);
@@ -58,11 +60,23 @@ void add_drive(const scene::StageSetting& stage, Rows& rows) {
   if (stage.stage->mean_velocity) {
     rows.convert("mean velocity", *stage.stage->mean_velocity, "m/s", units::dimension::velocity);
   }
+  if (stage.openings) {
+    const double inlet = stage.openings->front().value;
+    if (stage.openings->front().kind == core::Opening::Kind::velocity) {
+      rows.add("mean velocity at the inlet", u.to_si(inlet, units::dimension::velocity), "m/s", inlet);
+    } else {
+      rows.add("pressure at the inlet, above that at the outlet", u.to_si(inlet, units::dimension::pressure), "Pa",
+               inlet);
+    }
+    const double speed = std::abs(fastest_driven_speed(stage, scene));
+    rows.add("largest speed of the flow, about", u.to_si(speed, units::dimension::velocity), "m/s", speed);
+  }
   const scene::Vector& force = stage.body_force;
   for (int axis = 0; axis < force.dimension(); ++axis) {
     if (force[axis] == 0) continue;
     const std::string along = axis == 0 ? "" : std::string(" along ") + scene::axis_names[axis];
-    rows.add("driving force density" + along + (axis == 0 && stage.stage->mean_velocity ? ", without cells" : ""),
+    rows.add((stage.openings && axis == 0 ? "force density that the openings amount to" : "driving force density") +
+                 along + (axis == 0 && stage.stage->mean_velocity ? ", without cells" : ""),
              u.to_si(force[axis], units::dimension::force_density), "N/m3", force[axis]);
   }
   if (stage.oscillation.any()) {
@@ -81,23 +95,30 @@ void add_drive(const scene::StageSetting& stage, Rows& rows) {
   }
 }
 
+/// Where openings are, or walls of any shape.
+void add_open_ends(const scene::Scene& scene, Rows& rows) {
+  const scene::Domain& domain = scene.domain;
+  if (domain.has_shapes() ? domain.passages == nullptr : !domain.openings) return;
+  const double unit = std::pow(scene::lattice_spacing(scene), domain.dimension() - 1);
+  for (const int end : {0, 1}) {
+    const double open = domain.has_shapes() ? domain.passages->open[end] : domain.content() / domain.size.x();
+    const std::string name = !domain.openings ? "" : end == 0 ? ", the inlet" : ", the outlet";
+    rows.add(std::string("open at the ") + (end == 0 ? "lower" : "upper") + " end along x" + name, open,
+             domain.in_plane() ? "m" : "m2", open / unit);
+  }
+}
+
 void add_lengths(const scene::Scene& scene, Rows& rows) {
   for (int axis = 0; axis < scene.domain.dimension(); ++axis)
     rows.convert(std::array{"width of the domain", "height of the domain", "depth of the domain"}[axis],
                  scene.domain.size[axis], "m", units::dimension::length);
   if (scene.domain.tube_radius)
     rows.convert("radius of the tube", *scene.domain.tube_radius, "m", units::dimension::length);
+  add_open_ends(scene, rows);
   if (const scene::Domain& domain = scene.domain; domain.has_shapes()) {
     const auto share = domain.content() / domain.size.product();
     rows.add("share of the domain that is fluid", share, "1", share);
     rows.convert("widest place between the walls", domain.region_width, "m", units::dimension::length);
-    for (const int end : {0, 1}) {
-      if (!domain.passages) break;
-      const double open = domain.passages->open[end],
-                   unit = std::pow(scene::lattice_spacing(scene), domain.dimension() - 1);
-      rows.add(std::string("open at the ") + (end == 0 ? "lower" : "upper") + " end along x", open,
-               domain.in_plane() ? "m" : "m2", open / unit);
-    }
     if (domain.passages && std::isfinite(domain.passages->narrowest))
       rows.convert("narrowest passage", domain.passages->narrowest * scene::lattice_spacing(scene), "m",
                    units::dimension::length);
@@ -132,7 +153,7 @@ std::vector<Conversion> conversion_table(const Models& models) {
   for (const scene::StageSetting& stage : models.stages) {
     Rows rows(stage, table);
     add_fluid(*models.scene, stage, rows);
-    add_drive(stage, rows);
+    add_drive(*models.scene, stage, rows);
     add_lengths(*models.scene, rows);
     add_parameters(models, stage.units, rows);
   }

@@ -130,7 +130,7 @@ CellTravel cell_travel(const scene::Scene& scene, const scene::StageSetting& sta
 
 bool follows_cells(const scene::Scene& scene, const scene::StageSetting& stage) {
   if (scene.fluid.inertia || scene.cells.empty() || !frame_follows[scene.domain.dimension() - 2]) return false;
-  if (scene.domain.has_shapes()) return false;  // cells do not travel together
+  if (scene.domain.has_shapes() || scene.domain.is_open()) return false;  // cells do not travel together
   // Between no walls a driven fluid goes faster and faster, and cells with it.
   return scene.domain.periodic[1] ? stage.is_driven() : cell_travel(scene, stage).mean > follows_from;
 }

@@ -141,9 +141,12 @@ class PlacementChecker {
       }
       const double below = -0.5 - box.least[k], above = box.most[k] - (domain_.size[k] - 0.5);
       if (below < 0 && above < 0) continue;
+      const double by = below < 0 ? above : below;
+      if (k == 0)
+        refuse(cell, std::string(" sticks out of the ") + (below < 0 ? "outlet" : "inlet") + " by " + micrometres(by) +
+                         "; move it into the domain.");
       refuse(cell, std::string(" sticks through the ") + (below < 0 ? "upper" : "lower") + " wall across " +
-                       scene::axis_names[k] + " by " + micrometres(below < 0 ? above : below) +
-                       "; move it away from the wall.");
+                       scene::axis_names[k] + " by " + micrometres(by) + "; move it away from the wall.");
     }
     if (region_) check_within_region(cell);
   }

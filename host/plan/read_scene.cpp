@@ -157,6 +157,9 @@ void require_passages(const scene::Scene& scene) {
   const auto drives = [&](const scene::Stage& stage) {
     return scene::driving_force(stage, scene).x() != 0 || stage.oscillates();
   };
+  if (scene.domain.openings && !passages.through_x)
+    refuse("these walls leave no way from the inlet to the outlet",
+           "let their opening begin at the domain's lower end along x and reach to its upper end");
   if (!passages.through_x && std::any_of(scene.stages.begin(), scene.stages.end(), drives))
     refuse("a flow is driven along x, and these walls leave no way through the domain from one end to the other",
            "open a way, or leave out what drives the flow");

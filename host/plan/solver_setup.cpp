@@ -4,10 +4,45 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/error.hpp"
 #include "constants.hpp"
 #include "core/geometry/border_of_region.hpp"
+#include "core/geometry/parts.hpp"
+#include "shape/walls.hpp"
 
 namespace rouleau::plan {
+
+namespace {
+
+/// The true area of the section at the first nodes along x, over that of its fluid nodes.
+template <int D>
+double inlet_share(const scene::Scene& scene, const LatticeWalls<D>& walls) {
+  const core::Domain<D> domain = scene::lattice_domain<D>(scene);
+  core::Domain<D> column = domain;
+  column.block.end[0] = 1;
+  double nodes = 0, area = 0;
+  for (int i = 0; i < row_count(column.block); ++i) {
+    std::array<int, D> node{};
+    const auto row = row_of(column.block, i);
+    std::copy(row.begin(), row.end(), node.begin() + 1);
+    nodes += walls.solid->at(node) ? 0 : 1;
+  }
+  if (scene.domain.tube_radius) {
+    area = std::numbers::pi * std::pow(*scene.domain.tube_radius / scene::lattice_spacing(scene), 2);
+  } else {
+    constexpr double half_of_slice = 1e-3;
+    core::Vec<D> middle = core::Vec<D>::Zero(), half = core::Vec<D>::Constant(half_of_slice);
+    for (int k = 1; k < D; ++k) half[k] = 0.5 * domain.size[k], middle[k] = half[k] - 0.5;
+    area = core::content_of<D>(*walls.region, middle, half, shape::content_halvings) / (2 * half_of_slice);
+  }
+  if (nodes == 0)
+    throw Error(Cause::bad_input, scene.place(scene.domain.openings->front().pointer),
+                "the inlet leads into a wall: none of the lattice's nodes there is fluid",
+                {"let the walls leave it open, or take more nodes"});
+  return area / nodes;
+}
+
+}  // namespace
 
 template <int D>
 LatticeWalls<D> lattice_walls(const scene::Scene& scene) {
@@ -21,6 +56,7 @@ LatticeWalls<D> lattice_walls(const scene::Scene& scene) {
     const auto open = core::intersection<D>({walls.region, core::between_walls<D>(domain)});
     walls.area = core::size_of<D>(core::border_of_region(*open, domain));
   }
+  if (scene.domain.openings) walls.inlet_share = inlet_share(scene, walls);
   return walls;
 }
 template LatticeWalls<2> lattice_walls(const scene::Scene&);
@@ -34,6 +70,7 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index, const L
 
   core::BasicSolverSetup<D> setup{
       .domain = scene::lattice_domain<D>(scene),
+      .openings = stage.openings,
       .region = walls.region,
       .solid = walls.solid,
       .wall_area = walls.area,
@@ -42,7 +79,7 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index, const L
       .inertia = scene.fluid.inertia,
       .follow_cells = plan.facts.stages[index].follows_cells,
       .walls = stage.walls,
-      .body_force_x = stage.body_force.x(),
+      .body_force_x = stage.openings ? 0 : stage.body_force.x(),
       .body_force_y = stage.body_force.y(),
       .body_force_z = stage.body_force.z(),
       .oscillation = stage.oscillation,
@@ -59,6 +96,8 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index, const L
       .strain_per_step = plan.facts.stages[index].shear_rate * stage.units.time,
       .time_step = stage.stage->density_factor,  // proportional to it
       .tension_unit = stage.units.unit(units::dimension::tension)};
+  if (setup.openings && setup.openings->front().kind == core::Opening::Kind::velocity)
+    setup.openings->front().value *= walls.inlet_share;
   if (walls.region) {
     const double spacing = scene::lattice_spacing(scene);
     // The mean over the true section, when the solver goes by that over its nodes.

@@ -16,6 +16,8 @@ struct LatticeWalls {
   core::RegionPointer<D> region = {};
   std::shared_ptr<const core::SolidNodes<D>> solid = {};
   double area = 0;
+  /// Of an inlet, the area that is open over that of its fluid nodes.
+  double inlet_share = 1;
 };
 template <int D>
 LatticeWalls<D> lattice_walls(const scene::Scene& scene);

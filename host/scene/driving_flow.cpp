@@ -49,6 +49,20 @@ ViscosityRange viscosity_range(const FluidProperties& fluid) {
   return range;
 }
 
+double opening_drive(const Scene& scene) {
+  const Domain& domain = scene.domain;
+  if (!domain.openings || !has_walls(domain)) return 0;
+  const auto& [inlet, outlet] = *domain.openings;
+  if (inlet.pressure) return (*inlet.pressure - *outlet.pressure) / domain.size.x();
+  // Of a developed flow, the largest velocity over the mean one: no more in any usual section.
+  const bool in_plane_flow = domain.in_plane() || (!domain.has_shapes() && !(domain.is_duct() && !domain.periodic[1]));
+  const double peak = domain.tube_radius ? 2 : in_plane_flow ? 1.5 : 2.25;
+  const double narrower =
+      domain.passages && domain.passages->least_open > 0 ? domain.passages->open[0] / domain.passages->least_open : 1;
+  const double height = wall_distance(domain), round = domain.tube_radius ? 2 : 1;
+  return 8 * round * scene.fluid.viscosity * peak * narrower * *inlet.mean_velocity / (height * height);
+}
+
 Vector driving_force(const Stage& stage, const Scene& scene) {
   Vector force = Vector::filled(scene.domain.dimension(), 0) + scene.fluid.body_force + stage.pressure_gradient;
   if (stage.mean_velocity && scene.domain.tube_radius) {
@@ -58,6 +72,7 @@ Vector driving_force(const Stage& stage, const Scene& scene) {
     const double height = scene.domain.across(1), share = scene.domain.has_shapes() ? 1 : duct_share(scene.domain);
     force.x() = 12 * channel_viscosity(scene) * *stage.mean_velocity / (height * height * share);
   }
+  force.x() += opening_drive(scene);
   return force;
 }
 

@@ -40,8 +40,9 @@ struct Passages {
   Vector narrowest_at = {};                     ///< m
   double apart = 0;                             ///< nodes that no way leads to from most others
   Vector apart_at = {};                         ///< one of them, m
-  bool through_x = true;                        ///< whether a way leads through a period along x
+  bool through_x = true;            ///< whether a way leads through a period along x, or from inlet to outlet
   std::array<double, 2> open = {};  ///< m2, or m in two dimensions, at the lower end along x and the upper one
+  double least_open = 0;            ///< the same at the place along x where it is least
 };
 
 /// Cells that come in through an opening while the run goes on.

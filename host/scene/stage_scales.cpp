@@ -66,6 +66,16 @@ StageSetting make_stage_setting(const Scene& scene, int index) {
   setting.walls = {-(apart - mean), apart + mean};
   setting.body_force = driving_force(stage, scene);
   for (double& along : setting.body_force) along = setting.units.to_lattice(along, units::dimension::force_density);
+  if (scene.domain.openings) {
+    const auto& [inlet, outlet] = *scene.domain.openings;
+    core::Opening& lower = setting.openings.emplace()[0];
+    if (inlet.pressure) {
+      lower.value = setting.units.to_lattice(*inlet.pressure - *outlet.pressure, units::dimension::pressure);
+    } else {
+      lower = {core::Opening::Kind::velocity,
+               setting.units.to_lattice(*inlet.mean_velocity, units::dimension::velocity)};
+    }
+  }
   setting.dimension = scene.domain.dimension();
 
   if (stage.oscillates()) {

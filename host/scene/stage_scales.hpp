@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/fluid/openings/opening.hpp"
 #include "core/fluid/oscillation.hpp"
 #include "driving_flow.hpp"
 #include "lattice.hpp"
@@ -19,14 +20,15 @@ struct StageSetting {
   double tau;
   double shear_rate;              ///< lattice
   core::WallVelocity walls;       ///< lattice
-  Vector body_force;              ///< lattice, body force and pressure gradient
+  Vector body_force;              ///< lattice, body force and pressure gradient; of openings what they amount to
+  core::Openings openings;        ///< lattice, mean velocity over the inlet's true area, pressures above the outlet's
   core::Oscillation oscillation;  ///< lattice, of walls and body force
   double oscillating_rate;        ///< lattice, amplitude of the shear rate
   long max_steps;                 ///< of duration or strain, whichever is shorter
   int dimension;
 
   /// Walls or a force put energy in.
-  [[nodiscard]] bool is_driven() const { return fastest_wall() != 0 || largest_body_force() != Vector(); }
+  [[nodiscard]] bool is_driven() const { return openings || fastest_wall() != 0 || largest_body_force() != Vector(); }
   /// Largest speed of a wall and largest force that there may be, oscillation included; lattice.
   [[nodiscard]] double fastest_wall() const {
     return std::max(std::abs(walls.lower) + std::abs(oscillation.walls.lower),

@@ -21,8 +21,9 @@ using core::Vec;
 /// Runs of fluid nodes along x, joined to those beside them; each knows how many periods it lies from its parent.
 class Pools {
  public:
-  int add(double nodes) {
-    runs_.push_back({static_cast<int>(runs_.size()), 0, nodes, false});
+  /// `at_end`: whether it begins or ends at the lower and the upper opening.
+  int add(double nodes, const std::array<bool, 2>& at_end) {
+    runs_.push_back({static_cast<int>(runs_.size()), 0, nodes, false, at_end});
     return static_cast<int>(runs_.size()) - 1;
   }
   /// Run b with run a, where a way from a to b goes over `periods` ends of the domain.
@@ -39,6 +40,7 @@ class Pools {
     runs_[gone].periods = kept == of_a ? way : -way;
     runs_[kept].nodes += runs_[gone].nodes;
     runs_[kept].goes_on = runs_[kept].goes_on || runs_[gone].goes_on;
+    for (const int end : {0, 1}) runs_[kept].at_end[end] = runs_[kept].at_end[end] || runs_[gone].at_end[end];
   }
   /// First run of a pool, and how many periods it is from there.
   std::pair<int, int> root(int run) {
@@ -53,13 +55,16 @@ class Pools {
   }
   [[nodiscard]] int count() const { return static_cast<int>(runs_.size()); }
   [[nodiscard]] double nodes(int root) const { return runs_[root].nodes; }
-  [[nodiscard]] bool goes_on(int root) const { return runs_[root].goes_on; }
+  [[nodiscard]] bool goes_on(int root) const {
+    return runs_[root].goes_on || (runs_[root].at_end[0] && runs_[root].at_end[1]);
+  }
 
  private:
   struct Run {
     int parent, periods;
     double nodes;
     bool goes_on;  ///< of a pool: it comes again after a period
+    std::array<bool, 2> at_end;
   };
   std::vector<Run> runs_;
 };
@@ -80,6 +85,7 @@ class Survey {
       for (int k = 0, rest = i; k < D; ++k, rest /= 3) way[k] = rest % 3 - 1;
     }
     layer_.resize(stride_[D - 1]);
+    open_nodes.resize(static_cast<std::size_t>(domain.size[0]));
     for (Node node{}; node[D - 1] < domain.size[D - 1]; ++node[D - 1]) add_layer(node[D - 1]);
     if (domain.periodic[D - 1]) {
       std::swap(layer_, last_layer_);
@@ -102,8 +108,8 @@ class Survey {
     return node;
   }
   Pools pools;
-  std::vector<long> first_of_run;         ///< nodes
-  std::array<double, 2> open_nodes = {};  ///< at both ends along x
+  std::vector<long> first_of_run;  ///< nodes
+  std::vector<double> open_nodes;  ///< at each place along x
 
  private:
   struct Place {
@@ -145,11 +151,11 @@ class Survey {
       const int begin = x;
       while (x < size && is_fluid(x)) ++x;
       first_of_run.push_back(level * stride_[D - 1] + row * size + begin);
-      rows_[row].push_back({begin, x, pools.add(x - begin)});
+      const bool open = !domain_.periodic[0];
+      rows_[row].push_back({begin, x, pools.add(x - begin, {open && begin == 0, open && x == size})});
     }
-    open_nodes[0] += is_fluid(0) ? 1 : 0;
-    open_nodes[1] += is_fluid(size - 1) ? 1 : 0;
-    if (!rows_[row].empty() && is_fluid(0) && is_fluid(size - 1))
+    for (int x = 0; x < size; ++x) open_nodes[static_cast<std::size_t>(x)] += is_fluid(x) ? 1 : 0;
+    if (domain_.periodic[0] && !rows_[row].empty() && is_fluid(0) && is_fluid(size - 1))
       pools.join(rows_[row].back()[2], rows_[row].front()[2], 1);
   }
 
@@ -281,7 +287,9 @@ scene::Passages surveyed(const scene::Scene& scene) {
     found.apart_at = place_of(survey.first_of_run[run]);
     break;
   }
-  for (const int end : {0, 1}) found.open[end] = survey.open_nodes[end] * std::pow(spacing, D - 1);
+  const double of_node = std::pow(spacing, D - 1);
+  found.open = {survey.open_nodes.front() * of_node, survey.open_nodes.back() * of_node};
+  found.least_open = *std::ranges::min_element(survey.open_nodes) * of_node;
   return found;
 }
 

@@ -49,6 +49,41 @@ core::Border<D> imaged(core::Border<D> border, const core::Domain<D>& domain) {
   return border;
 }
 
+/// Of a border that ends at an opening: there it goes on as its own mirror image.
+template <int D>
+core::Border<D> opened(core::Border<D> border, const core::Domain<D>& domain) {
+  if (domain.periodic[0]) return border;
+  const core::Border<D> own = border;
+  border.facets.clear();
+  const double size = domain.size[0], off = rounding * size;
+  std::vector<bool> is_end(own.facets.size());
+  for (const double plane : {-0.5, size - 0.5}) {
+    const auto at_plane = [&](int corner) { return std::abs(own.corners[corner][0] - plane) <= off; };
+    std::vector<bool> here(own.facets.size());
+    for (std::size_t i = 0; i < own.facets.size(); ++i)
+      here[i] = std::ranges::all_of(own.facets[i], at_plane), is_end[i] = is_end[i] || here[i];
+    if (std::ranges::none_of(here, [](bool is) { return is; })) continue;
+    std::vector<int> image;
+    for (int i = 0; i < static_cast<int>(own.corners.size()); ++i) {
+      image.push_back(at_plane(i) ? i : static_cast<int>(border.corners.size()));
+      Vec<D> corner = own.corners[i];
+      corner[0] = 2 * plane - corner[0];
+      if (!at_plane(i)) border.corners.push_back(corner);
+    }
+    for (std::size_t i = 0; i < own.facets.size(); ++i) {
+      if (here[i]) continue;
+      auto facet = own.facets[i];
+      for (int& corner : facet) corner = image[corner];
+      std::swap(facet[0], facet[1]);
+      border.facets.push_back(facet);
+    }
+  }
+  for (std::size_t i = 0; i < own.facets.size(); ++i) {
+    if (!is_end[i]) border.facets.push_back(own.facets[i]);
+  }
+  return border;
+}
+
 /// Whether a border goes through the domain along a periodic axis, from end to end.
 template <int D>
 bool passes(const core::Border<D>& border, const core::Domain<D>& domain, int axis) {
@@ -166,7 +201,7 @@ core::RegionPointer<D> closed_region(const scene::SceneFields& fields, const std
                         ", which is periodic, and would lie over its own image\nlet it begin at 0 um and end at " +
                         number(domain.period(k) * unit * 1e6) + " um, or make it shorter");
   }
-  border = imaged(std::move(border), domain);
+  border = imaged(opened(std::move(border), domain), domain);
   if (border.facets.empty()) return everything<D>();
   require_closed(fields, pointer, border, domain, unit);
   if (!(enclosed(border, held) > 0))
@@ -210,9 +245,12 @@ Samples<D> samples_of(const scene::SceneFields& fields, const std::string& point
   return samples;
 }
 
-/// Samples around: `before` and `after` along an axis, its own again (`wraps`) or those at the ends with a minus sign.
+/// What lies beyond the samples at an end: nothing of the shape, the samples from the other end, or those of this one.
+enum class Beyond { nothing, samples, end };
+
+/// Samples around: `before` and `after` along an axis.
 template <int D>
-Samples<D> padded(const Samples<D>& samples, int axis, int before, int after, bool wraps) {
+Samples<D> padded(const Samples<D>& samples, int axis, int before, int after, std::array<Beyond, 2> beyond) {
   Samples<D> made{samples.size, {}};
   const int count = samples.size[axis];
   made.size[axis] += before + after;
@@ -226,9 +264,10 @@ Samples<D> padded(const Samples<D>& samples, int axis, int before, int after, bo
     const std::size_t below = i % stride, rest = i / stride;
     const int there = static_cast<int>(rest % made.size[axis]) - before;
     const std::size_t above = rest / made.size[axis];
-    const int from = wraps ? ((there % count) + count) % count : std::clamp(there, 0, count - 1);
+    const Beyond which = beyond[there < 0 ? 0 : 1];
+    const int from = which == Beyond::samples ? ((there % count) + count) % count : std::clamp(there, 0, count - 1);
     const double value = samples.values[below + stride * (from + above * count)];
-    made.values[i] = from == there || wraps ? value : -std::abs(value);
+    made.values[i] = from == there || which != Beyond::nothing ? value : -std::abs(value);
   }
   return made;
 }
@@ -251,6 +290,13 @@ core::RegionPointer<D> picture_region(const scene::SceneFields& fields, const st
     const double at = image.at[k] / unit - 0.5, length = samples.size[k] * step[k], period = domain.period(k);
     const bool wraps = period > 0 && std::abs(length - period) <= rounding * period;
     int before = 1, after = 1;
+    std::array<Beyond, 2> beyond{};
+    if (wraps) beyond = {Beyond::samples, Beyond::samples};
+    if (const double size = domain.size[k]; k == 0 && !domain.periodic[0]) {  // at openings it goes on, too
+      const int half = static_cast<int>(std::ceil(size / 2 / step[k])) + 1;
+      if (at <= -0.5 + rounding * size) before = half, beyond[0] = Beyond::end;
+      if (at + length >= size - 0.5 - rounding * size) after = half, beyond[1] = Beyond::end;
+    }
     if (wraps) {  // half a period around the domain: the nearest border is no farther
       around.periodic[k] = false;
       before = std::max(1, static_cast<int>(std::ceil((at + 0.5 + period / 2) / step[k])) + 1);
@@ -263,7 +309,7 @@ core::RegionPointer<D> picture_region(const scene::SceneFields& fields, const st
                                  " um, where the domain comes again after " + number(period * unit * 1e6) +
                                  " um\nwrite " + (k < 2 ? "\"pixel\": \"" : "\"spacing\": \"") +
                                  number(period * unit / samples.size[k] * 1e6, 12) + " um\", or cut the picture");
-    samples = padded(samples, k, before, after, wraps);
+    samples = padded(samples, k, before, after, beyond);
     first[k] = at + (0.5 - before) * step[k];
   }
   core::Border<D> border = core::zero_border<D>(samples.values, samples.size);

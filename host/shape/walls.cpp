@@ -86,6 +86,16 @@ class Builder {
     return period > 0 && from <= -0.5 + exact * period && to >= period - 0.5 - exact * period;
   }
 
+  /// Ends along an axis, those taken away that lie at the ends of a period, or of the domain at an opening.
+  void take_ends(int axis, double& from, double& to) const {
+    constexpr double exact = 1e-9;
+    if (passes(axis, from, to)) from = -endless, to = endless;
+    if (axis > 0 || domain_.periodic[0]) return;
+    const double size = domain_.size[0];
+    if (from <= -0.5 + exact * size) from = -endless;
+    if (to >= size - 0.5 - exact * size) to = endless;
+  }
+
   /// With images along the periodic axes that it does not pass; refused where it reaches farther than a period beyond.
   RegionPointer<D> imaged(const std::string& pointer, RegionPointer<D> region, const Vec<D>& from,
                           const Vec<D>& to) const {
@@ -101,9 +111,7 @@ class Builder {
 
   RegionPointer<D> region(const std::string& pointer, const WallShape::Box& box) const {
     Vec<D> from = at<D>(box.lower), to = at<D>(box.upper);
-    for (int k = 0; k < D; ++k) {
-      if (passes(k, from[k], to[k])) from[k] = -endless, to[k] = endless;
-    }
+    for (int k = 0; k < D; ++k) take_ends(k, from[k], to[k]);
     return imaged(pointer, core::box_region<D>(from, to), from, to);
   }
 
@@ -114,7 +122,7 @@ class Builder {
 
   RegionPointer<D> region(const std::string& pointer, const WallShape::Cylinder& cylinder) const {
     double from = at(cylinder.from), to = at(cylinder.to);
-    if (passes(cylinder.axis, from, to)) from = -endless, to = endless;
+    take_ends(cylinder.axis, from, to);
     const Vec<2> center(at(cylinder.center[0]), at(cylinder.center[1]));
     const double radius = cylinder.radius / unit_;
     Vec<D> lower, upper;

@@ -79,8 +79,8 @@ struct Domain {
 
   /// After how many spacings everything comes again along an axis; 0: never.
   [[nodiscard]] double period(int axis) const { return periodic[axis] ? size[axis] : 0.0; }
-  /// Whether there are walls across an axis, or openings across x.
-  [[nodiscard]] bool walled(int axis) const { return !periodic[axis]; }
+  /// Whether there are walls across an axis; across x there are openings.
+  [[nodiscard]] bool walled(int axis) const { return axis > 0 && !periodic[axis]; }
   /// The node in [0, size) that node i is an image of; -1: it lies beyond a wall.
   [[nodiscard]] int wrapped(int axis, int i) const {
     const int n = size[axis];

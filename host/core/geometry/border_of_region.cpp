@@ -57,10 +57,10 @@ class Finder {
       if (border.normal(facet).norm() > 0) border.facets.push_back(facet);
     }
   }
-  /// What lies beyond the domain's own walls, half a spacing away from nodes, is put on them.
+  /// What lies beyond the domain's own walls, or openings, half a spacing away from nodes, is put on them.
   [[nodiscard]] Vec<D> within(Vec<D> place) const {
     for (int k = 0; k < D; ++k) {
-      if (domain_.walled(k)) place[k] = std::clamp(place[k], -0.5, domain_.size[k] - 0.5);
+      if (!domain_.periodic[k]) place[k] = std::clamp(place[k], -0.5, domain_.size[k] - 0.5);
     }
     return place;
   }
@@ -75,7 +75,7 @@ template <int D>
 Border<D> border_of_region(const Region<D>& region, const Domain<D>& domain) {
   Box<D> all{{}, domain.size};
   for (int k = 0; k < D; ++k) {
-    if (domain.walled(k)) all.begin[k] = -1;
+    if (!domain.periodic[k]) all.begin[k] = -1;
   }
   Finder<D> finder(region, domain);
   finder.find(all);
