@@ -50,15 +50,15 @@ void Tables::require(const std::filesystem::path& directory, const Mark& mark) {
   for (std::size_t k = 0; k < mark.size(); ++k) files::require(directory / file_of(observe::tables()[k]), mark[k]);
 }
 
-Tables::Tables(const std::filesystem::path& directory, int dimension, Kept kept) : dimension_(dimension) {
+Tables::Tables(const std::filesystem::path& directory, const observe::RunKind& run, Kept kept) : run_(run) {
   for (const observe::Table& table : observe::tables()) {
     files_.emplace_back(directory / file_of(table), kept);
     files_.back().clear();
-    files_.back().write(line_of(table.columns(dimension)));
+    files_.back().write(line_of(table.columns(run)));
   }
 }
 
-Tables::Tables(const std::filesystem::path& directory, int dimension, const Mark& mark) : dimension_(dimension) {
+Tables::Tables(const std::filesystem::path& directory, const observe::RunKind& run, const Mark& mark) : run_(run) {
   for (std::size_t k = 0; k < mark.size(); ++k) {
     files_.emplace_back(directory / file_of(observe::tables()[k]));
     files_.back().go_back(mark[k]);
@@ -69,7 +69,7 @@ void Tables::write(const observe::Snapshot& snapshot) {
   std::vector<std::string> entries;
   for (std::size_t k = 0; k < files_.size(); ++k) {
     const observe::Table& table = observe::tables()[k];
-    const std::vector<const observe::Observable*> observables = table.of(dimension_);
+    const std::vector<const observe::Observable*> observables = table.of(run_);
     table.for_each_row(snapshot, [&](const observe::Row& row) {
       entries.clear();
       for (const observe::Observable* observable : observables)

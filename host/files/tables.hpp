@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "file.hpp"
+#include "observe/observable.hpp"
 #include "observe/snapshot.hpp"
 
 namespace rouleau::files {
@@ -32,16 +33,16 @@ class Tables {
   static void require(const std::filesystem::path& directory, const Mark& mark);
 
   /// Creates the four files in `directory` with their header lines. Throws Error(input_output), as all members do.
-  Tables(const std::filesystem::path& directory, int dimension, Kept kept = Kept::on_disk);
+  Tables(const std::filesystem::path& directory, const observe::RunKind& run, Kept kept = Kept::on_disk);
   /// Opens them, and drops what was written after the mark.
-  Tables(const std::filesystem::path& directory, int dimension, const Mark& mark);
+  Tables(const std::filesystem::path& directory, const observe::RunKind& run, const Mark& mark);
   void write(const observe::Snapshot& snapshot);
   /// To the disk.
   Mark mark();
   void close();
 
  private:
-  int dimension_;  ///< of the run, which decides on columns
+  observe::RunKind run_;  ///< decides on columns
   std::vector<AppendFile> files_;
 };
 

@@ -95,6 +95,7 @@ std::vector<double> smallest_gaps(core::Surroundings<3>& around, const core::Dom
   for (int k = 0; k < 3; ++k) {
     if (domain.periodic[k]) most = std::min(most, domain.period(k) / 2);
   }
+  if (std::isinf(most)) most = domain.size[0] + domain.size[1] + domain.size[2];  // from corner to corner, and more
   std::vector<double> gaps(s.cells.size(), std::numeric_limits<double>::infinity());
   std::vector<int> near;
   std::vector<char> open = open_ones(s, gaps);
@@ -118,8 +119,9 @@ std::vector<double> smallest_gaps(core::Surroundings<2>& around, const core::Dom
   double first = 1;  // about the size of a cell, and not much of the box
   for (const core::BoundingBox<2>& box : around.boxes())
     if (box.usable()) first = std::max({first, box.most[0] - box.least[0], box.most[1] - box.least[1]});
-  const double most = 2 * std::max(domain.period(0), domain.period(1));
-  double reach = std::min(first, domain.period(0) / 16);
+  const double length = domain.size[0];
+  const double most = 2 * std::max(length, domain.period(1));
+  double reach = std::min(first, length / 16);
   for (std::vector<char> open = open_ones(m, gaps); reach < most && around.show(reach, open); reach *= 2) {
     const auto is_open = [&](int cell) { return open[cell] != 0; };
     const std::vector<core::BoundingBox<2>> boxes = core::boxes_of_known<2>(m);

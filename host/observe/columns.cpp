@@ -212,6 +212,21 @@ constexpr Observable aggregate_columns[] = {
      .in_space = true},
 };
 
+/// Of the inlet or the outlet, in the plane per depth.
+constexpr Observable at_opening(int end, bool space) {
+  return {.name = end == 0 ? "inlet_flow" : "outlet_flow",
+          .unit = space ? "m3/s" : "m2/s",
+          .doc = end == 0
+                     ? "flow through all openings of the inlet together, along +x, at the first nodes behind it; in "
+                       "two dimensions per depth"
+                     : "likewise, of the outlet, at the last nodes before it",
+          .value = end == 0 ? output<&Snapshot::inlet_flow> : output<&Snapshot::outlet_flow>,
+          .has_means = true,
+          .in_space = space,
+          .in_plane = !space,
+          .at_openings = true};
+}
+
 constexpr Observable series_columns[] = {
     {.name = "stage", .unit = "", .doc = "number of the stage, from 0", .value = output<&Snapshot::stage>},
     {.name = "stage_name", .unit = "", .doc = "its name", .value = output<&Snapshot::stage_name>},
@@ -275,7 +290,7 @@ constexpr Observable series_columns[] = {
      .chart = "Largest relative area drift"},
     {.name = "mass_drift",
      .unit = "",
-     .doc = "largest relative change of the fluid's mass within a stage, so far",
+     .doc = "largest relative change of the fluid's mass within a stage, so far; 0 between openings, whose flows tell",
      .value = output<&Snapshot::mass_drift>,
      .chart = "Relative mass drift"},
     {.name = "area_leakage_max",
@@ -394,6 +409,22 @@ constexpr Observable series_columns[] = {
      .value = energy<&EnergySnapshot::body_force_power>,
      .chart = "Power",
      .line = "from the body force"},
+    at_opening(0, false),
+    at_opening(0, true),
+    at_opening(1, false),
+    at_opening(1, true),
+    {.name = "inlet_pressure",
+     .unit = "Pa",
+     .doc = "mean of the fluid's nodes at the inlet, half a spacing behind it",
+     .value = output<&Snapshot::inlet_pressure>,
+     .has_means = true,
+     .at_openings = true},
+    {.name = "outlet_pressure",
+     .unit = "Pa",
+     .doc = "likewise, before the outlet",
+     .value = output<&Snapshot::outlet_pressure>,
+     .has_means = true,
+     .at_openings = true},
 };
 
 constexpr Observable size_columns[] = {

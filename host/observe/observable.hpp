@@ -31,6 +31,14 @@ struct Row {
 /// Nothing where the column does not apply to the row.
 using Value = std::variant<std::monostate, double, long, bool, std::string>;
 
+/// What a run has that some columns are for.
+struct RunKind {
+  // NOLINTNEXTLINE(google-explicit-constructor): a number of dimensions says it of most
+  RunKind(int dimensions, bool openings = false) : dimension(dimensions), open(openings) {}
+  int dimension;
+  bool open;  ///< fluid goes through openings
+};
+
 struct Observable {
   std::string_view name;  ///< without the unit
   std::string_view unit;  ///< coherent SI, such as "J/m"; empty: a number or a text
@@ -40,7 +48,12 @@ struct Observable {
   std::string_view line = {};   ///< which line of that chart it is, where there are several
   bool has_means = false;       ///< summary.json has its means over the stages (RheologyHistory)
   bool in_space = false;        ///< there in three dimensions only
+  bool in_plane = false;        ///< there in two dimensions only
+  bool at_openings = false;     ///< there only where fluid goes through openings
 
+  [[nodiscard]] bool is_in(const RunKind& run) const {
+    return !(run.dimension == 3 ? in_plane : in_space) && (run.open || !at_openings);
+  }
   /// The column's name: the name and the unit, "kinetic_energy_J_per_m".
   [[nodiscard]] std::string column() const;
 };

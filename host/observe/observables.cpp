@@ -42,17 +42,17 @@ void for_each_size(const Snapshot& output, const std::function<void(const Row&)>
 
 }  // namespace
 
-std::vector<const Observable*> Table::of(int dimension) const {
+std::vector<const Observable*> Table::of(const RunKind& run) const {
   std::vector<const Observable*> chosen;
   for (const Observable& observable : observables) {
-    if (dimension == 3 || !observable.in_space) chosen.push_back(&observable);
+    if (observable.is_in(run)) chosen.push_back(&observable);
   }
   return chosen;
 }
 
-std::vector<std::string> Table::columns(int dimension) const {
+std::vector<std::string> Table::columns(const RunKind& run) const {
   std::vector<std::string> names;
-  for (const Observable* observable : of(dimension)) names.push_back(observable->column());
+  for (const Observable* observable : of(run)) names.push_back(observable->column());
   return names;
 }
 
@@ -79,7 +79,9 @@ nlohmann::json columns_json() {
                          {"unit", o.unit},
                          {"doc", o.doc},
                          {"has_means", o.has_means},
-                         {"in_space", o.in_space}});
+                         {"in_space", o.in_space},
+                         {"in_plane", o.in_plane},
+                         {"at_openings", o.at_openings}});
     list.push_back({{"name", table.name}, {"columns", std::move(columns)}});
   }
   return list;

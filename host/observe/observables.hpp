@@ -20,10 +20,10 @@ struct Table {
   /// Calls `visit` for each row that an output has, in the order of the file.
   void (*for_each_row)(const Snapshot& output, const std::function<void(const Row&)>& visit);
 
-  /// Those of a run of so many dimensions.
-  [[nodiscard]] std::vector<const Observable*> of(int dimension) const;
+  /// Those of a run of this kind.
+  [[nodiscard]] std::vector<const Observable*> of(const RunKind& run) const;
   /// Their columns' names.
-  [[nodiscard]] std::vector<std::string> columns(int dimension) const;
+  [[nodiscard]] std::vector<std::string> columns(const RunKind& run) const;
 };
 
 /// cells, aggregates, series and aggregate_sizes, in this order.
@@ -31,7 +31,7 @@ const std::array<Table, 4>& tables();
 /// That of this name; throws std::out_of_range where there is none.
 const Table& table(std::string_view name);
 
-/// [{name, columns: [{column, unit, doc, has_means, in_space}]}], for scripts/docs.
+/// [{name, columns: [{column, unit, doc, has_means, in_space, in_plane, at_openings}]}], for scripts/docs.
 nlohmann::json columns_json();
 
 }  // namespace rouleau::observe

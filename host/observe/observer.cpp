@@ -126,7 +126,8 @@ template <int D>
 double Observer::follow_fluid(const core::AnyFluid<D>& fluid, const core::FluidMeasures<D>& measured) {
   if (std::isnan(initial_mass_)) initial_mass_ = measured.mass;
   const auto nodes = static_cast<double>(fluid.setting().domain.nodes());
-  mass_drift_ = std::max(mass_drift_, std::abs(measured.mass - initial_mass_) / nodes);
+  if (!scene_->domain.is_open())  // what goes through openings is no loss
+    mass_drift_ = std::max(mass_drift_, std::abs(measured.mass - initial_mass_) / nodes);
   const double mach = units::mach_number(measured.speed);
   mach_max_ = std::max(mach_max_, mach);
   return mach;
@@ -225,6 +226,23 @@ void Observer::observe_layers(const core::Cells<D>& cells, const core::Ranks<D>&
   snapshot.cell_free_layer_empty = layer.empty;
 }
 
+namespace {
+
+/// Returns the mean pressure gradient that drives the flow, lattice units.
+template <int D>
+double observe_openings(const core::AnyFluid<D>& fluid, const scene::Scene& scene, const units::LatticeUnits& units,
+                        Snapshot& snapshot) {
+  const auto [lower, upper] = fluid.end_flows();
+  const double area = std::pow(units.length, D - 1), outside = *scene.domain.openings->back().pressure;
+  snapshot.inlet_flow = units.to_si(lower.flow, units::dimension::velocity) * area;
+  snapshot.outlet_flow = units.to_si(upper.flow, units::dimension::velocity) * area;
+  snapshot.inlet_pressure = outside + units.to_si(lower.pressure, units::dimension::pressure);
+  snapshot.outlet_pressure = outside + units.to_si(upper.pressure, units::dimension::pressure);
+  return (lower.pressure - upper.pressure) / (scene.domain.nodes[0] - 1);
+}
+
+}  // namespace
+
 template <int D>
 Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures<D>& measured,
                            const scene::StageSetting& setting, bool with_fields) {
@@ -241,7 +259,10 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
   snapshot.shear_rate = snapshot.wall_stress_lower = snapshot.wall_stress_upper = std::nan("");
   snapshot.pressure_gradient = snapshot.discharge_hematocrit = std::nan("");
   snapshot.aggregate_size_number_mean = snapshot.aggregate_size_weight_mean = std::nan("");
+  snapshot.inlet_flow = snapshot.outlet_flow = snapshot.inlet_pressure = snapshot.outlet_pressure = std::nan("");
   const core::AnyFluid<D>& fluid = solver.fluid();
+  double drive = fluid.setting().body_force[0];
+  if (scene_->domain.openings) drive = observe_openings(fluid, *scene_, units, snapshot);
   const bool oscillates = setting.oscillation.any();
   const bool has_walls = !scene_->domain.periodic[1] || scene_->domain.has_shapes();  // across y, or of any shape
   if (has_walls) {
@@ -258,8 +279,8 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
   if (is_driven_channel(setting, *scene_)) {
     const double rate = flow_rate(fluid, measured.row_velocities);
     if (!oscillates)
-      snapshot.relative_viscosity = apparent_viscosity(rate / scene::duct_share(scene_->domain),
-                                                       fluid.setting().body_force[0], setting, scene_->domain.nodes[1]);
+      snapshot.relative_viscosity =
+          apparent_viscosity(rate / scene::duct_share(scene_->domain), drive, setting, scene_->domain.nodes[1]);
     snapshot.flow_rate = units.to_si(rate, units::dimension::velocity) * units.length;
     const scene::Domain& box = scene_->domain;
     snapshot.mean_velocity = snapshot.flow_rate;  // times what the flow rate is a mean over

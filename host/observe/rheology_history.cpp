@@ -140,8 +140,9 @@ Json RheologyHistory::means(const StageHistory& stage) {
       late.push_back(values.back());
       late_time.push_back(instant.time);
     }
-    Json& of_column = result[averaged()[k].column()];  // null
     const std::optional<double> mean = mean_of(time, values, middle);
+    if (!mean && averaged()[k].at_openings) continue;
+    Json& of_column = result[averaged()[k].column()];  // null
     if (!mean) continue;
     const auto count = static_cast<double>(late.size());
     double squares = 0;

@@ -70,14 +70,15 @@ void read_column(const StudyReader& reader, const std::string& pointer, Quantity
       std::array<const char*, 2>{"cells", "series"}[reader.choice(pointer + "/table", {"cells", "series"})];
   quantity.column = reader.text(pointer + "/column");
   const observe::Table& table = observe::table(quantity.table);
-  const auto columns = table.columns(3);
+  std::vector<std::string> columns;
+  for (const observe::Observable& observable : table.observables) columns.push_back(observable.column());
   const auto found = std::find(columns.begin(), columns.end(), quantity.column);
   if (found == columns.end()) {
     reader.scene_fields().refuse(pointer + "/column",
                                  quantity.table + ".csv has no column " + in_quotes(quantity.column) +
                                      did_you_mean(quantity.column, columns) + "\nit has " + listed(columns));
   }
-  quantity.unit = table.of(3)[found - columns.begin()]->unit;
+  quantity.unit = table.observables[found - columns.begin()].unit;
 }
 
 /// Keys of one kind or a few.

@@ -9,7 +9,8 @@ def lines(columns):
     yield "| column | meaning |\n|---|---|"
     for column in columns:
         means = "; means in summary.json" if column["has_means"] else ""
-        space = "in three dimensions: " if column["in_space"] else ""
+        space = "in three dimensions: " if column["in_space"] else "in two dimensions: " if column["in_plane"] else ""
+        space += "between openings: " if column["at_openings"] else ""
         yield f"| `{column['column']}` | {space}{column['doc']}{means} |"
 
 
