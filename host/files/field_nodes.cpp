@@ -19,7 +19,9 @@ FieldNodes::FieldNodes(const hdf5::File& file, const std::string& dataset) {
     spacing[axis] = part ? file.read_attribute("/", "fields_spacing_m", axis) : length / double(nodes[axis]);
     first[axis] = part ? file.read_attribute("/", "fields_first_m", axis) : spacing[axis] / 2;
     const bool whole = std::abs(spacing[axis] * double(nodes[axis]) - length) < 1e-6 * length;
-    if (axis < periodic.size()) periodic[axis] = whole && (axis == 0 || file.read_attribute("/", "periodic_y") != 0);
+    const bool comes_again =
+        axis == 0 ? !file.has_attribute("/", "periodic_x") : file.read_attribute("/", "periodic_y") != 0;
+    if (axis < periodic.size()) periodic[axis] = whole && comes_again;
   }
 }
 

@@ -2,7 +2,7 @@
 //
 //   /                      attributes format, title, size_m [2], nodes [2], periodic_y; where output.fields has a
 //                          region or a stride: fields_first_m [2], fields_spacing_m [2]; each [3] in three
-//                          dimensions, with periodic_z
+//                          dimensions, with periodic_z; between openings periodic_x, 0
 //   /walls                 corners, first, segments; in three dimensions points, triangles: see WallBorder (walls.hpp)
 //   /frames/000000         attributes step, time_s, strain, stage, stage_name
 //     membranes/points     [n, 2] f64, m, not wrapped into the box; [n, 3] in three dimensions
@@ -101,6 +101,7 @@ class FrameReader {
   explicit FrameReader(const std::filesystem::path& file) : file_(open_frames(file)) {}
   [[nodiscard]] std::array<double, 2> size() const;           ///< of the domain, m
   [[nodiscard]] std::array<double, 3> size_in_space() const;  ///< m, in three dimensions
+  [[nodiscard]] bool periodic_x() const { return !file_.has_attribute("/", "periodic_x"); }
   [[nodiscard]] bool periodic_z() const { return file_.read_attribute("/", "periodic_z") != 0; }
   [[nodiscard]] bool periodic_y() const { return file_.read_attribute("/", "periodic_y") != 0; }
   [[nodiscard]] WallBorder walls() const { return read_walls(file_); }

@@ -51,6 +51,11 @@ void add_compression(const LimitedStage& of, LimitList& limits) {
     limits.below("compression of cells by a force across walls" + of.where, compression, largest_compression_by_shear,
                  of.lower + " or fluid.body_force: the walls' pressure compresses the lattice's fluid", of.density);
   }
+  if (of.stage.openings) {  // from one to the other
+    limits.below("compression of cells by the pressure between openings" + of.where,
+                 compression_by_pressure * std::abs(of.stage.body_force.x()) * of.scene.domain.nodes[0],
+                 largest_compression_by_shear, of.lower + ": pressure compresses the lattice's fluid", of.density);
+  }
 }
 
 /// Of second order in the spacing.

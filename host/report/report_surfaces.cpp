@@ -49,7 +49,7 @@ Json surface_data(const files::FrameReader& reader, const std::vector<std::size_
     for (const int node : corners) append_number(triangles, node);
   }
   Json result{{"size_um", {size[0] * micro, size[1] * micro, size[2] * micro}},
-              {"periodic", {true, reader.periodic_y(), reader.periodic_z()}},
+              {"periodic", {reader.periodic_x(), reader.periodic_y(), reader.periodic_z()}},
               {"quantum_um", quantum * micro},
               {"first", begin.first},
               {"triangles", base64(triangles)},

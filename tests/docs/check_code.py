@@ -303,6 +303,7 @@ BLOCKS = [
     ("docs/trust.md", '{\n  "collection": 1', index_of_a_collection),
     ("docs/testing.md", "// Locks:", fuzz_target),
     ("docs/walls.md", '"domain": {\n', walls_of_any_shape),
+    ("docs/walls.md", '"domain": { "size": ["60 um", "20 um"],', walls_of_any_shape),
     ("docs/walls.md", '"domain": { "size": ["100 um", "40 um"],', walls_of_any_shape),
     ("docs/walls.md", '"domain": { "size": ["100 um", "40 um", "40 um"]', walls_of_any_shape),
     ("sdk/README.md", "// Screened repulsion of flat surfaces", lambda test, block: test.conform(block.text, YUKAWA())),

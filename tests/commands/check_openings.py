@@ -1,0 +1,242 @@
+#!/usr/bin/env python3
+"""Flow between openings from scenes to files: velocity and pressure against flows that are known, what goes in and out,
+the same bytes for any threads, ranks and after a kill, and what is refused.
+
+usage: check_openings.py ROULEAU [--no-whole-runs]
+"""
+import csv
+import json
+import math
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from scene_parts import changed, tube_stl  # noqa: E402
+
+PROGRAM = Path(sys.argv[1]).resolve()
+WITHOUT_WHOLE_RUNS = "--no-whole-runs" in sys.argv  # where the program is ten times slower
+MPIRUN = shutil.which("mpirun.openmpi") or shutil.which("mpirun")
+HAS_RANKS = MPIRUN and list(PROGRAM.parent.parent.glob("lib/**/*transport-openmpi*"))
+UM, VISCOSITY, HEIGHT, LENGTH, MEAN = 1e-6, 1.2e-3, 10e-6, 20e-6, 1e-3
+WALLS = {"lower": {"wall": {}}, "upper": {"wall": {}}}
+RED_CELL = {"shape": {"biconcave": {"radius": "3.91 um"}}, "segments": 60, "interior_viscosity": "6 cP",
+            "membrane": [{"model": "neo-hookean", "parameters": {"shear_modulus": "6e-3 dyn/cm"}},
+                         {"model": "bending", "parameters": {"modulus": "3.6e-12 dyn cm"}}]}
+
+
+def ends(inlet, outlet="0 Pa"):
+    return {"lower": {"inlet": inlet}, "upper": {"outlet": {"pressure": outlet}}}
+
+
+VELOCITY, PRESSURE = {"mean_velocity": "1 mm/s"}, {"pressure": f"{12 * VISCOSITY * MEAN * LENGTH / HEIGHT ** 2!r} Pa"}
+CHANNEL = {
+    "rouleau": 1,
+    "domain": {"size": ["20 um", "10 um"], "nodes": [40, 20], "x": ends(VELOCITY), "y": WALLS},
+    "fluid": {"density": "1 g/cm3", "viscosity": "1.2 cP"}, "numerics": {"density_factor": 20},
+    "stages": [{"name": "flow", "duration": "4 ms"}], "output": {"cells": {"seconds": "2 ms"}},
+}
+STEP = changed(CHANNEL, domain__obstacles=[{"box": {"lower": ["8 um", "0 um"], "upper": ["20 um", "4 um"]}},
+                                           {"sphere": {"center": ["4 um", "9 um"], "radius": "2.3 um"}}])
+RADIUS = 2.5e-6
+TUBE = changed(CHANNEL, domain={"size": ["6 um", "5.5 um", "5.5 um"], "nodes": [24, 22, 22], "x": ends(VELOCITY),
+                                "walls": {"tube": {"radius": "2.5 um"}}},
+               stages__0__duration="0.6 ms", output__cells__seconds="0.3 ms")
+DUCT_STEP = changed(CHANNEL, domain={"size": ["6 um", "5 um", "4 um"], "nodes": [18, 15, 12], "x": ends(VELOCITY), "y": WALLS,
+                                     "z": WALLS, "obstacles": [{"box": {"lower": ["3 um", "0 um", "0 um"],
+                                                                        "upper": ["6 um", "2 um", "4 um"]}}]},
+                    stages__0__duration="1 ms", output__cells__seconds="0.25 ms")
+
+
+class Openings(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory(prefix="rouleau-openings-")
+        self.addCleanup(scratch.cleanup)
+        self.folder = Path(scratch.name)
+
+    def write(self, scene, name="scene"):
+        (self.folder / f"{name}.json").write_text(json.dumps(scene))
+        return f"{name}.json"
+
+    def rouleau(self, *words, ranks=0):
+        launcher = [MPIRUN, "--allow-run-as-root", "--oversubscribe", "-n", str(ranks)] if ranks else []
+        return subprocess.run([*launcher, PROGRAM, *words], cwd=self.folder, capture_output=True, timeout=300)
+
+    def run_scene(self, scene, name, *options, ranks=0):
+        done = self.rouleau("run", self.write(scene, name), "--out", name, "--quiet", *options, ranks=ranks)
+        self.assertEqual(done.returncode, 0, done.stderr.decode(errors="replace"))
+        return self.rows(name)
+
+    def rows(self, name):
+        text = (self.folder / name / "series.csv").read_text()
+        return [{k: v if k == "stage_name" else float(v) for k, v in row.items()} for row in csv.DictReader(text.splitlines())]
+
+    def refusal(self, scene):
+        done = self.rouleau("plan", self.write(scene))
+        said = done.stderr.decode(errors="replace")
+        self.assertEqual(done.returncode, 2, said)
+        return said
+
+    def balance(self, row, unit="m2"):
+        return abs(row[f"outlet_flow_{unit}_per_s"] / row[f"inlet_flow_{unit}_per_s"] - 1)
+
+    def plane(self, inlet, rows, name):
+        """Errors of flow and pressure drop against plane Poiseuille flow."""
+        scene = changed(CHANNEL, domain__nodes=[2 * rows, rows], domain__x=ends(inlet, "7 Pa" if inlet is VELOCITY else "0 Pa"))
+        row = self.run_scene(scene, name)[-1]
+        self.assertLess(self.balance(row), 1e-6)
+        spacing = HEIGHT / rows
+        drop = 12 * VISCOSITY * MEAN * (LENGTH - spacing) / HEIGHT ** 2  # from the first node to the last
+        if inlet is VELOCITY:
+            outside = 7 + drop * spacing / 2 / (LENGTH - spacing)
+            self.assertAlmostEqual(row["outlet_pressure_Pa"], outside, delta=0.02 * drop)
+        return (abs(row["inlet_flow_m2_per_s"] / (MEAN * HEIGHT) - 1),
+                abs((row["inlet_pressure_Pa"] - row["outlet_pressure_Pa"]) / drop - 1))
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_plane_poiseuille_flow_of_second_order_by_velocity_and_by_pressure(self):
+        flows, drops = zip(*[self.plane(VELOCITY, rows, f"by-velocity-{rows}") for rows in (8, 16)])
+        self.assertLess(max(flows), 1e-9)
+        self.assertLess(drops[1], 5e-3)
+        self.assertGreater(math.log2(drops[0] / drops[1]), 1.8)
+        flows, drops = zip(*[self.plane(PRESSURE, rows, f"by-pressure-{rows}") for rows in (8, 16)])
+        self.assertLess(flows[1], 5e-3)
+        self.assertGreater(math.log2(flows[0] / flows[1]), 1.8)
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_a_tube_has_hagen_and_poiseuilles_pressure_drop(self):
+        row = self.run_scene(TUBE, "tube")[-1]
+        self.assertLess(self.balance(row, "m3"), 1e-6)
+        flow, spacing = math.pi * RADIUS ** 2 * MEAN, 0.25e-6
+        self.assertAlmostEqual(row["inlet_flow_m3_per_s"] / flow, 1, delta=5e-3)
+        drop = 8 * VISCOSITY * row["inlet_flow_m3_per_s"] / (math.pi * RADIUS ** 4) * (6e-6 - spacing)
+        # The radius is 10 spacings: 0.65/R^2 of the flow rate, as of the tube that a force drives.
+        self.assertAlmostEqual((row["inlet_pressure_Pa"] - row["outlet_pressure_Pa"]) / drop, 1, delta=0.65 / 10 ** 2)
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_what_comes_in_goes_out_over_a_step_and_between_other_shapes(self):
+        for name, scene, unit in (("step", STEP, "m2"), ("duct", DUCT_STEP, "m3")):
+            rows = self.run_scene(scene, name)
+            self.assertLess(self.balance(rows[-1], unit), 1e-6)
+            area = HEIGHT if unit == "m2" else 5e-6 * 4e-6
+            self.assertAlmostEqual(rows[-1][f"inlet_flow_{unit}_per_s"] / (MEAN * area), 1, delta=1e-6)
+            means = json.loads((self.folder / name / "summary.json").read_text())["means"][-1]
+            self.assertIn(f"outlet_flow_{unit}_per_s", means)
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_walls_get_what_the_pressures_lose_and_openings_nothing(self):
+        row = self.run_scene(CHANNEL, "stress")[-1]
+        gradient = (row["inlet_pressure_Pa"] - row["outlet_pressure_Pa"]) / (LENGTH - 0.5e-6)
+        for wall in ("lower", "upper"):
+            self.assertAlmostEqual(row[f"wall_stress_{wall}_Pa"] / (gradient * HEIGHT / 2), 1, delta=1e-6)
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_shapes_that_end_at_an_opening_go_on_beyond_it(self):
+        (self.folder / "tube.stl").write_bytes(tube_stl(2.5, 6))
+        points = [["0 um", "1 um"], ["20 um", "1 um"], ["20 um", "9 um"], ["0 um", "9 um"]]
+        drawn = changed(CHANNEL, domain={"size": ["20 um", "10 um"], "nodes": [40, 20], "x": ends(VELOCITY),
+                                         "walls": {"within": {"outline": {"points": points}}}})
+        row = self.run_scene(drawn, "drawn")[-1]
+        self.assertLess(self.balance(row), 1e-6)
+        self.assertAlmostEqual(row["inlet_flow_m2_per_s"] / (MEAN * 8e-6), 1, delta=1e-6)
+        gradient = (row["inlet_pressure_Pa"] - row["outlet_pressure_Pa"]) / (LENGTH - 0.5e-6)
+        self.assertAlmostEqual(row["wall_stress_lower_Pa"] / (gradient * 4e-6), 1, delta=1e-5)
+        mesh = {"mesh": {"file": "tube.stl", "unit": "1 um", "at": ["0 um", "2.75 um", "2.75 um"]}}
+        flows = [self.run_scene(changed(TUBE, domain__walls=walls, stages__0__duration="0.3 ms"), name)[-1]
+                 for name, walls in (("round", {"tube": {"radius": "2.5 um"}}), ("mesh", {"within": mesh}))]
+        # The mesh is a polygon of 96 sides inside of the tube.
+        for key in ("inlet_flow_m3_per_s", "inlet_pressure_Pa"):
+            self.assertAlmostEqual(flows[1][key] / flows[0][key], 1, delta=5e-3)
+
+    def same_bytes(self, scene, name):
+        self.run_scene(scene, f"{name}-1", "--threads", "1")
+        self.run_scene(scene, f"{name}-2", "--threads", "2")
+        self.run_scene(scene, f"{name}-paused", "--max-steps", "101")
+        self.run_scene(scene, f"{name}-paused", "--resume", "--threads", "2")
+        others = [f"{name}-2", f"{name}-paused"]
+        for ranks in (2, 3) if HAS_RANKS else ():
+            self.run_scene(scene, f"{name}-ranks-{ranks}", ranks=ranks)
+            others.append(f"{name}-ranks-{ranks}")
+        for other in others:
+            for file in ("series.csv", "frames.h5"):
+                self.assertEqual((self.folder / other / file).read_bytes(), (self.folder / f"{name}-1" / file).read_bytes(),
+                                 f"{other}/{file}")
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_the_same_bytes_for_threads_and_ranks_and_resumed(self):
+        fields = {"cells": {"seconds": "0.05 ms"}, "fields": {"seconds": "0.1 ms", "quantities": ["velocity", "density"]}}
+        short = {"stages__0__duration": "0.2 ms", "output": fields}
+        self.same_bytes(changed(STEP, fluid__inertia=True, **short), "plane")
+        self.same_bytes(changed(TUBE, domain__x=ends({"pressure": "5 Pa"}), **short), "space")
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_a_run_that_is_killed_goes_on_to_the_same_bytes(self):
+        scene = changed(STEP, output={"cells": {"seconds": "0.05 ms"}, "checkpoint": {"seconds": "1 ms"}})
+        self.run_scene(scene, "whole")
+        process = subprocess.Popen([PROGRAM, "run", self.write(scene, "killed"), "--out", "killed", "--quiet"], cwd=self.folder)
+        series = self.folder / "killed/series.csv"
+        while process.poll() is None and not (series.exists() and len(series.read_text().splitlines()) > 8):
+            pass
+        process.kill()
+        process.wait()
+        self.run_scene(scene, "killed", "--resume")
+        self.assertEqual((self.folder / "killed/series.csv").read_text(), (self.folder / "whole/series.csv").read_text())
+
+    def test_plan_tells_inlet_and_outlet(self):
+        for scene, open_area, speed in ((CHANNEL, HEIGHT, 1.5e-3), (TUBE, math.pi * RADIUS ** 2, 2e-3),
+                                        (STEP, HEIGHT, 1.5e-3 * 20 / 12)):
+            plan = json.loads(self.rouleau("plan", self.write(scene), "--json").stdout)
+            rows = {row["quantity"]: row for row in plan["conversions"]}
+            self.assertAlmostEqual(rows["open at the lower end along x, the inlet"]["si"] / open_area, 1, delta=1e-6)
+            self.assertIn("open at the upper end along x, the outlet", rows)
+            self.assertAlmostEqual(rows["mean velocity at the inlet"]["si"], MEAN, delta=1e-12)
+            self.assertAlmostEqual(rows["largest speed of the flow, about"]["si"] / speed, 1, delta=0.01)
+        said = self.rouleau("plan", self.write(changed(CHANNEL, domain__x=ends({"pressure": "1 Pa"})))).stdout.decode()
+        self.assertIn("pressure at the inlet, above that at the outlet", said)
+
+    def test_columns_are_there_between_openings_only(self):
+        self.assertEqual(self.rouleau("run", self.write(changed(CHANNEL, stages__0__duration="2 us")), "--out", "open",
+                                      "--quiet").returncode, 0)
+        closed = changed(CHANNEL, stages__0={"name": "flow", "duration": "2 us", "mean_velocity": "1 mm/s"})
+        del closed["domain"]["x"]
+        self.assertEqual(self.rouleau("run", self.write(closed), "--out", "closed", "--quiet").returncode, 0)
+        for name, there in (("open", True), ("closed", False)):
+            self.assertEqual("inlet_flow_m2_per_s" in (self.folder / name / "series.csv").read_text(), there)
+            self.assertEqual("inlet_flow" in (self.folder / name / "summary.json").read_text(), there)
+            self.assertNotIn("m3_per_s", (self.folder / name / "series.csv").read_text())
+
+    def test_what_openings_do_not_know_is_refused_with_a_remedy(self):
+        cells = {"type": "rbc", "hematocrit": 0.3}
+        fed = changed(CHANNEL, cell_types={"rbc": RED_CELL})
+        for scene, words in (
+                (changed(CHANNEL, domain__x={"lower": {"inlet": VELOCITY}}), "\"upper\" is missing"),
+                (changed(CHANNEL, domain__x=ends({**VELOCITY, **PRESSURE})), "not at both"),
+                (changed(CHANNEL, domain__x=ends({})), "does not say what it is kept at"),
+                (changed(CHANNEL, domain__x=ends({"mean_velocity": "-1 mm/s"})), "its mean velocity is above 0"),
+                (changed(fed, domain__x=ends({**PRESSURE, "cells": cells})), "cells come in with a mean velocity"),
+                (changed(fed, domain__x=ends({**VELOCITY, "cells": {**cells, "type": "rcb"}})), "did you mean \"rbc\"?"),
+                (changed(fed, domain__x=ends({**VELOCITY, "cells": {**cells, "length": "15 um"}})), "twice as long"),
+                (changed(fed, domain__x=ends({**VELOCITY, "cells": cells}), stages__0={"name": "s", "shear_rate": "1 1/s", "strain": 1}),
+                 "no duration"),
+                (changed(CHANNEL, domain__x=ends(PRESSURE), domain__y="periodic"), "nothing that could hold it"),
+                (changed(CHANNEL, stages__0__mean_velocity="1 mm/s"), "leave this out"),
+                (changed(CHANNEL, stages__0__pressure_gradient="1 Pa/m"), "leave this out"),
+                (changed(CHANNEL, stages__0__start="developed"), "let the flow come to be"),
+                (changed(CHANNEL, stages__0__shear_rate=0, stages__0__oscillation={"frequency": "1 kHz", "amplitude": "1 1/s"}),
+                 "openings do not oscillate"),
+                (changed(CHANNEL, fluid__layers=[{"from": "0 um", "to": "1 um", "viscosity": "2 cP"}]), "knows of no layers"),
+                (changed(CHANNEL, fluid__body_force=["1 N/m3", "0 N/m3"]), "drive the flow along x"),
+                (changed(CHANNEL, domain__obstacles=[{"box": {"lower": ["8 um", "0 um"], "upper": ["9 um", "10 um"]}}]),
+                 "no way from the inlet to the outlet"),
+                (changed(CHANNEL, domain__obstacles=[{"box": {"lower": ["0 um", "0 um"], "upper": ["9 um", "10 um"]}}]),
+                 "no way from the inlet to the outlet"),
+                (changed(fed, cells=[{"type": "rbc", "at": ["2 um", "5 um"]}]), "sticks out of the inlet")):
+            with self.subTest(words=words):
+                self.assertIn(words, self.refusal(scene))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
