@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "opening_columns.hpp"
 #include "rotation.hpp"
 
 namespace rouleau::observe {
@@ -212,21 +213,6 @@ constexpr Observable aggregate_columns[] = {
      .in_space = true},
 };
 
-/// Of the inlet or the outlet, in the plane per depth.
-constexpr Observable at_opening(int end, bool space) {
-  return {.name = end == 0 ? "inlet_flow" : "outlet_flow",
-          .unit = space ? "m3/s" : "m2/s",
-          .doc = end == 0
-                     ? "flow through all openings of the inlet together, along +x, at the first nodes behind it; in "
-                       "two dimensions per depth"
-                     : "likewise, of the outlet, at the last nodes before it",
-          .value = end == 0 ? output<&Snapshot::inlet_flow> : output<&Snapshot::outlet_flow>,
-          .has_means = true,
-          .in_space = space,
-          .in_plane = !space,
-          .at_openings = true};
-}
-
 constexpr Observable series_columns[] = {
     {.name = "stage", .unit = "", .doc = "number of the stage, from 0", .value = output<&Snapshot::stage>},
     {.name = "stage_name", .unit = "", .doc = "its name", .value = output<&Snapshot::stage_name>},
@@ -409,22 +395,6 @@ constexpr Observable series_columns[] = {
      .value = energy<&EnergySnapshot::body_force_power>,
      .chart = "Power",
      .line = "from the body force"},
-    at_opening(0, false),
-    at_opening(0, true),
-    at_opening(1, false),
-    at_opening(1, true),
-    {.name = "inlet_pressure",
-     .unit = "Pa",
-     .doc = "mean of the fluid's nodes at the inlet, half a spacing behind it",
-     .value = output<&Snapshot::inlet_pressure>,
-     .has_means = true,
-     .at_openings = true},
-    {.name = "outlet_pressure",
-     .unit = "Pa",
-     .doc = "likewise, before the outlet",
-     .value = output<&Snapshot::outlet_pressure>,
-     .has_means = true,
-     .at_openings = true},
 };
 
 constexpr Observable size_columns[] = {
@@ -448,7 +418,11 @@ std::vector<Observable> with_instant(std::span<const Observable> own) {
 
 std::vector<Observable> columns_of_cells() { return with_instant(cell_columns); }
 std::vector<Observable> columns_of_aggregates() { return with_instant(aggregate_columns); }
-std::vector<Observable> columns_of_series() { return with_instant(series_columns); }
+std::vector<Observable> columns_of_series() {
+  std::vector<Observable> all = with_instant(series_columns);
+  for (const Observable& observable : columns_at_openings()) all.push_back(observable);
+  return all;
+}
 std::vector<Observable> columns_of_aggregate_sizes() { return with_instant(size_columns); }
 
 }  // namespace rouleau::observe

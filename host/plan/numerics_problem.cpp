@@ -31,7 +31,7 @@ constexpr CapillaryRange usual_capillary{0.0125, 0.2};  ///< before it is known
 /// and meet.
 bool can_be_steady(const scene::Scene& scene) {
   constexpr double near_the_middle = 0.1;  // radii
-  if (scene.cells.size() != 1 || !scene.packings.empty()) return false;
+  if (scene.cells.size() != 1 || !scene.packings.empty() || scene.domain.is_open()) return false;
   const double off = near_the_middle * shape::smallest_radius(scene);
   const scene::Domain& domain = scene.domain;
   const scene::Vector from_middle = scene.cells[0].center - 0.5 * domain.size;
@@ -133,7 +133,7 @@ double NumericsProblem::half_width() const {
   if (domain.has_shapes()) return domain.region_width / 2;
   if (domain.dimension() == 2 || !scene::has_walls(domain)) return domain.size.least() / 2;
   double apart = INFINITY;
-  for (int axis = 0; axis < domain.dimension(); ++axis) {
+  for (int axis = 1; axis < domain.dimension(); ++axis) {
     if (!domain.periodic[axis]) apart = std::min(apart, domain.across(axis));
   }
   return apart / 2;

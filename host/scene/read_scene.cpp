@@ -44,7 +44,8 @@ void read_ends(const SceneFields& fields, Domain& domain, int axis) {
   if (axis >= domain.dimension()) {
     fields.refuse_key(key, "there is no z in two dimensions\ngive size and nodes three numbers, or leave z out");
   }
-  domain.periodic[axis] = fields.value<nlohmann::json>(key).is_string();
+  const auto ends = fields.value<nlohmann::json>(key);
+  domain.periodic[axis] = axis == 0 ? !ends.is_object() : ends.is_string();
 }
 
 /// As many as there are sides.
