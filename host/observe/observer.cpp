@@ -226,23 +226,6 @@ void Observer::observe_layers(const core::Cells<D>& cells, const core::Ranks<D>&
   snapshot.cell_free_layer_empty = layer.empty;
 }
 
-namespace {
-
-/// Returns the mean pressure gradient that drives the flow, lattice units.
-template <int D>
-double observe_openings(const core::AnyFluid<D>& fluid, const scene::Scene& scene, const units::LatticeUnits& units,
-                        Snapshot& snapshot) {
-  const auto [lower, upper] = fluid.end_flows();
-  const double area = std::pow(units.length, D - 1), outside = *scene.domain.openings->back().pressure;
-  snapshot.inlet_flow = units.to_si(lower.flow, units::dimension::velocity) * area;
-  snapshot.outlet_flow = units.to_si(upper.flow, units::dimension::velocity) * area;
-  snapshot.inlet_pressure = outside + units.to_si(lower.pressure, units::dimension::pressure);
-  snapshot.outlet_pressure = outside + units.to_si(upper.pressure, units::dimension::pressure);
-  return (lower.pressure - upper.pressure) / (scene.domain.nodes[0] - 1);
-}
-
-}  // namespace
-
 template <int D>
 Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures<D>& measured,
                            const scene::StageSetting& setting, bool with_fields) {

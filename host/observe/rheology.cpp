@@ -25,6 +25,21 @@ double flow_rate(const core::AnyFluid<D>& fluid, const std::vector<double>& row_
 template double flow_rate(const core::AnyFluid<2>&, const std::vector<double>&);
 template double flow_rate(const core::AnyFluid<3>&, const std::vector<double>&);
 
+template <int D>
+double observe_openings(const core::AnyFluid<D>& fluid, const scene::Scene& scene, const units::LatticeUnits& units,
+                        Snapshot& snapshot) {
+  const auto [lower, upper] = fluid.end_flows();
+  const double area = std::pow(units.length, D - 1), outside = *scene.domain.openings->back().pressure;
+  snapshot.inlet_flow = units.to_si(lower.flow, units::dimension::velocity) * area;
+  snapshot.outlet_flow = units.to_si(upper.flow, units::dimension::velocity) * area;
+  snapshot.inlet_pressure = outside + units.to_si(lower.pressure, units::dimension::pressure);
+  snapshot.outlet_pressure = outside + units.to_si(upper.pressure, units::dimension::pressure);
+  return (lower.pressure - upper.pressure) / (scene.domain.nodes[0] - 1);
+}
+
+template double observe_openings(const core::AnyFluid<2>&, const scene::Scene&, const units::LatticeUnits&, Snapshot&);
+template double observe_openings(const core::AnyFluid<3>&, const scene::Scene&, const units::LatticeUnits&, Snapshot&);
+
 // Over a volume whose velocity u has no divergence, u_x = div (x u): the integral is that of x u n over its surface.
 // Along segments and over triangles places and velocities are linear.
 double cell_flux(const core::Membranes& m, const core::Ranks<2>& ranks) {

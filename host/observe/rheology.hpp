@@ -26,6 +26,12 @@ double flow_rate(const core::AnyFluid<D>& fluid) {
   return flow_rate(fluid, fluid.row_velocities());
 }
 
+/// Flow and pressure at both openings. Returns the mean pressure gradient that drives the flow from one to the other,
+/// lattice units.
+template <int D>
+double observe_openings(const core::AnyFluid<D>& fluid, const scene::Scene& scene, const units::LatticeUnits& units,
+                        Snapshot& snapshot);
+
 /// Integral of the velocity along x over what the cells enclose, lattice units: from their membranes' velocities, for
 /// what they enclose keeps its volume. All ranks together.
 double cell_flux(const core::Membranes& membranes, const core::Ranks<2>& ranks = {});
