@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kept_apart = 2;    // spacings, from other cells and from walls
 constexpr double room_to_move = 3;  // spacings, beyond the reach of a stencil: in some steps and a half
-constexpr int most_tries = 32;      // at a time
+constexpr int places_at_once = 32;      // at a time
 
 double duration_of(const scene::Scene& scene) {
   double sum = 0;
@@ -86,7 +86,7 @@ std::vector<core::Cells<D>> Inflow<D>::places(int cell, long step) const {
                       static_cast<std::uint32_t>(of_step >> 32)};
   shape::RandomNumbers numbers(seeds);
   std::vector<core::Cells<D>> found;
-  for (int i = 0; i < most_tries; ++i) {
+  for (int i = 0; i < places_at_once; ++i) {
     scene::CellPlacement placement{feed_->type, origin_, shape::radians(numbers.angle()), feed_->pointer};
     if constexpr (D == 3) {
       const double along = numbers.either_side(1), around = shape::radians(numbers.angle());

@@ -61,6 +61,8 @@ struct FluidState {
 
   /// Completes what lies around the block (AnyFluid::settle).
   void settle();
+  /// The relaxation rates are those of the suspending fluid.
+  void set_plain_rates();
   // What sets all populations, for an even step.
   void set(const StateOfNode<dimension>& state);
   /// Fluid::take_over: of a state that is settled.
@@ -72,8 +74,6 @@ struct FluidState {
   [[nodiscard]] double equilibrium(int q, double density, const std::array<double, dimension>& u) const;
   /// The populations of all rows have been set.
   void restart();
-  /// The relaxation rates are those of the suspending fluid.
-  void set_plain_rates();
 };
 
 extern template struct FluidState<float, D2Q9>;
