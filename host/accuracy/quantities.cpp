@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "files/csv_reader.hpp"
 #include "json/document.hpp"
@@ -33,6 +36,7 @@ void add(std::vector<Quantity>& all, Quantity quantity) {
 
 /// Rows of one cell.
 struct CellColumns {
+  long number = 0;
   Column strain, time, angle, deformation, y;
   std::size_t rows = 0;  ///< until the end of the scene's own stages
 };
@@ -44,23 +48,29 @@ std::size_t own_rows(const files::StoredTable& series, const std::string& beyond
   return static_cast<std::size_t>(std::find(stages.begin(), stages.end(), beyond) - stages.begin());
 }
 
-/// end: time of the last of these rows.
+/// The cells that are there at the end. end: time of the last of these rows.
 std::vector<CellColumns> read_cells(const std::filesystem::path& file, double end) {
   const files::StoredTable table(file);
-  if (table.rows() == 0) return {};
-  std::vector<CellColumns> cells(table.count_of("cell"));
+  std::map<double, CellColumns> cells;
   const Column number = table.numbers("cell"), strain = table.numbers("strain"), time = table.numbers("time_s"),
                angle = table.numbers("angle_rad"), deformation = table.numbers("deformation"), y = table.numbers("y_m");
+  double last = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < number.size(); ++i) {
-    CellColumns& cell = cells[static_cast<std::size_t>(number[i])];
+    if (!std::isfinite(number[i])) continue;
+    CellColumns& cell = cells[number[i]];
+    cell.number = std::lround(number[i]);
     cell.strain.push_back(strain[i]);
     cell.time.push_back(time[i]);
     cell.angle.push_back(angle[i]);
     cell.deformation.push_back(deformation[i]);
     cell.y.push_back(y[i]);
-    if (time[i] <= end) cell.rows = cell.time.size();
+    if (time[i] <= end) cell.rows = cell.time.size(), last = std::max(last, time[i]);
   }
-  return cells;
+  std::vector<CellColumns> there;
+  for (auto& [key, cell] : cells) {
+    if (cell.rows > 0 && cell.time[cell.rows - 1] == last) there.push_back(std::move(cell));
+  }
+  return there;
 }
 
 void add_passages(std::vector<Quantity>& all, const CellColumns& cell, const std::string& prefix, bool principal) {
@@ -87,10 +97,12 @@ void add_cells(std::vector<Quantity>& all, const std::vector<CellColumns>& cells
   const double mean = sum / static_cast<double>(cells.size());
   add(all, {.name = "deformation", .value = mean, .part_of_cells = mean, .principal = true});
   if (cells.size() > most_single_cells) return;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const CellColumns& cell = cells[i];
+  std::size_t most = 0;
+  for (const CellColumns& cell : cells) most = std::max(most, cell.rows);
+  for (const CellColumns& cell : cells) {
+    if (cell.rows < most) continue;  // it has come in: another run may have another one
     const bool lone = cells.size() == 1;
-    const std::string prefix = lone ? "" : "cell_" + std::to_string(i) + "_";
+    const std::string prefix = lone ? "" : "cell_" + std::to_string(cell.number) + "_";
     const double deformation = cell.deformation[cell.rows - 1], angle = cell.angle[cell.rows - 1];
     if (!lone) add(all, {.name = prefix + "deformation", .value = deformation, .part_of_cells = deformation});
     const bool inclined = std::abs(angle) < std::numbers::pi / 2;  // an angle that turns on is large for another reason

@@ -1,7 +1,7 @@
 #include "frames.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <limits>
 
 #include "base/error.hpp"
 #include "file.hpp"
@@ -58,7 +58,11 @@ void FrameWriter::write(const observe::Snapshot& snapshot) {
   open_->attribute(frame, "stage_name", snapshot.stage_name);
   FrameRecord record;
   record.time = snapshot.time;
-  if (!snapshot.membranes.empty()) write_membranes(frame, snapshot, record);
+  if (!snapshot.membranes.cell.empty()) {
+    write_membranes(frame, snapshot, record);
+  } else {
+    observe::give_all(snapshot.membranes.fields);
+  }
   if (!snapshot.fields.empty()) write_fields(frame, snapshot.fields, record);
   open_->flush();
   frames_.push_back(std::move(record));
@@ -93,7 +97,7 @@ class NumberRows {
 
 void FrameWriter::write_membranes(const std::string& frame, const observe::Snapshot& snapshot, FrameRecord& record) {
   const observe::MembraneSnapshot& membranes = snapshot.membranes;
-  if (!topology_here_ || membranes.first != first_) write_topology(membranes);
+  if (!topology_here_ || membranes.first != first_ || membranes.cell != cell_) write_topology(membranes);
   record.nodes = topology_record_.nodes;
   record.cells = topology_record_.cells;
   record.connectivity = topology_record_.connectivity;
@@ -111,26 +115,26 @@ void FrameWriter::write_membranes(const std::string& frame, const observe::Snaps
     hdf5::Rows rows = open_->begin(path, shape, false, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, field.unit);
     field.give([&](const std::vector<double>& values) { rows.append(values.data(), values.size() / components); });
   }
-  std::vector<int> aggregate(record.cells);
-  std::iota(aggregate.begin(), aggregate.end(), 0);
-  for (const observe::CellSnapshot& cell : snapshot.cells) aggregate[cell.cell] = cell.aggregate;
-  write_of_cells(group + "/aggregate", membranes.first, [&](std::size_t cell) { return aggregate[cell]; });
+  std::vector<int> aggregate = membranes.cell;
+  for (std::size_t k = 0; k < std::min(aggregate.size(), snapshot.cells.size()); ++k)
+    aggregate[k] = snapshot.cells[k].aggregate;
+  write_of_cells(group + "/aggregate", membranes.first, aggregate);
   for (const char* shared : {"/first", "/cell", record.surfaces ? "/triangles" : "/connectivity"})
     open_->link(topology_ + shared, group + shared);
 }
 
 void FrameWriter::write_of_cells(const std::string& path, const std::vector<int>& first,
-                                 const std::function<int(std::size_t cell)>& number) {
+                                 const std::vector<int>& number) {
   NumberRows rows(*open_, path, {static_cast<hsize_t>(first.back())});
   for (std::size_t cell = 0; cell + 1 < first.size(); ++cell) {
-    rows.next().insert(rows.next().end(), static_cast<std::size_t>(first[cell + 1] - first[cell]), number(cell));
+    rows.next().insert(rows.next().end(), static_cast<std::size_t>(first[cell + 1] - first[cell]), number[cell]);
     rows.write();
   }
   rows.write(true);
 }
 
 void FrameWriter::write_topology(const observe::MembraneSnapshot& membranes) {
-  const std::vector<int>& first = membranes.first;
+  const std::vector<int>&first = membranes.first, &cell_of = membranes.cell;
   constexpr int polyline = 2;  // XDMF's code in a mixed topology, followed by the number of nodes
   const std::size_t cells = first.size() - 1;
   topology_record_ = {};
@@ -142,20 +146,20 @@ void FrameWriter::write_topology(const observe::MembraneSnapshot& membranes) {
   const std::size_t per_outline = topology_record_.uniform ? 1 : 3;
   for (std::size_t cell = 0; cell < cells; ++cell) {
     topology_record_.connectivity += topology_record_.surfaces
-                                         ? 3 * membranes.triangles(static_cast<int>(cell)).size()
+                                         ? 3 * membranes.triangles(cell_of[cell]).size()
                                          : static_cast<std::size_t>(first[cell + 1] - first[cell]) + per_outline;
   }
 
   // A new segment repeats the topology that still holds, under its name.
-  if (first != first_ || topologies_ == 0) topology_ = "/topology/" + std::to_string(topologies_++);
+  if (first != first_ || cell_of != cell_ || topologies_ == 0) topology_ = "/topology/" + std::to_string(topologies_++);
   topology_here_ = true;
   open_->make_group(topology_);
   open_->write(topology_ + "/first", first, "1");
-  write_of_cells(topology_ + "/cell", first, [](std::size_t cell) { return static_cast<int>(cell); });
+  write_of_cells(topology_ + "/cell", first, cell_of);
   if (topology_record_.surfaces) {
     NumberRows rows(*open_, topology_ + "/triangles", {topology_record_.connectivity / 3, 3});
     for (std::size_t cell = 0; cell < cells; ++cell) {
-      for (const auto& corners : membranes.triangles(static_cast<int>(cell))) {
+      for (const auto& corners : membranes.triangles(cell_of[cell])) {
         for (const int corner : corners) rows.next().push_back(first[cell] + corner);
       }
       rows.write();
@@ -173,6 +177,7 @@ void FrameWriter::write_topology(const observe::MembraneSnapshot& membranes) {
     rows.write(true);
   }
   first_ = first;
+  cell_ = cell_of;
 }
 
 void FrameWriter::write_fields(const std::string& frame, const observe::FieldSnapshot& snapshot, FrameRecord& record) {
@@ -254,6 +259,20 @@ observe::OutlineSnapshot FrameReader::outlines(int frame) const {
   return written.triangles.empty() ? written : middle_sections(written);
 }
 
+std::vector<int> cells_of(const hdf5::File& file, const std::string& group, const std::vector<int>& first) {
+  const std::vector<double> of_node = file.read(group + "/cell");
+  std::vector<int> cells;
+  for (std::size_t k = 0; k + 1 < first.size(); ++k) {
+    const auto node = static_cast<std::size_t>(first[k]);
+    const double number = node < of_node.size() ? of_node[node] : -1;
+    if (!(number > (cells.empty() ? -1 : cells.back()) && number <= std::numeric_limits<int>::max()))
+      throw Error(Cause::input_output, Place{file.path().string()},
+                  group + "/cell does not fit " + group + "/first: the file is damaged; repeat the run");
+    cells.push_back(static_cast<int>(number));
+  }
+  return cells;
+}
+
 observe::OutlineSnapshot FrameReader::surfaces(int frame) const {
   observe::OutlineSnapshot outlines;
   const std::string group = frame_path(static_cast<std::size_t>(frame)) + "/membranes";
@@ -271,6 +290,7 @@ observe::OutlineSnapshot FrameReader::surfaces(int frame) const {
     }
     outlines.first.push_back(static_cast<int>(before = first));
   }
+  outlines.cell = cells_of(file_, group, outlines.first);
   for (std::size_t i = 0; i + components <= points.size(); i += components) {
     std::vector<double>* const along[] = {&outlines.x, &outlines.y, &outlines.z};
     for (std::size_t axis = 0; axis < components; ++axis) along[axis]->push_back(points[i + axis]);

@@ -1,4 +1,5 @@
-// frames.h5: outlines of all cells at every output time, fluid fields where due, in a form ParaView and h5py open.
+// frames.h5: outlines of the cells that are there at every output time, fluid fields where due, in a form ParaView and
+// h5py open.
 //
 //   /                      attributes format, title, size_m [2], nodes [2], periodic_y; where output.fields has a
 //                          region or a stride: fields_first_m [2], fields_spacing_m [2]; each [3] in three
@@ -10,7 +11,8 @@
 //                          the triangles around the node
 //     membranes/curvature  [n] f64, 1/m, sum of both principal curvatures, in three dimensions
 //     membranes/first      [cells + 1] i32, first node of each cell and the total
-//     membranes/cell       [n] i32     membranes/aggregate [n] i32, label: smallest index of its cells
+//     membranes/cell       [n] i32, number of the node's cell in the scene; those that are there, ascending
+//     membranes/aggregate  [n] i32, label: smallest number of its cells
 //     membranes/connectivity           closed polylines for XDMF; in three dimensions instead
 //     membranes/triangles  [m, 3] i32  nodes, counter-clockwise seen from outside
 //     fields/velocity      [ny, nx, 3] f32 or f64, m/s (third component 0: XDMF's vectors have three)
@@ -19,12 +21,11 @@
 //
 // Every dataset has its unit as attribute "unit". Node (i, j) of the lattice lies at ((i + 1/2) dx, (j + 1/2) dx).
 // first, cell and connectivity or triangles are links to one dataset as long as they do not change, so that they cost
-// nothing per frame.
+// nothing per frame; they are written again when a cell comes or leaves. A frame without cells has no membranes.
 #pragma once
 
 #include <array>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -69,8 +70,7 @@ class FrameWriter {
   void write_membranes(const std::string& frame, const observe::Snapshot& snapshot, FrameRecord& record);
   void write_topology(const observe::MembraneSnapshot& membranes);
   /// A number of each node, the same for all of a cell.
-  void write_of_cells(const std::string& path, const std::vector<int>& first,
-                      const std::function<int(std::size_t cell)>& number);
+  void write_of_cells(const std::string& path, const std::vector<int>& first, const std::vector<int>& number);
   void write_fields(const std::string& frame, const observe::FieldSnapshot& snapshot, FrameRecord& record);
   [[nodiscard]] FieldGrid field_grid() const;
   void read_back(const std::filesystem::path& source, std::size_t frames);
@@ -84,7 +84,8 @@ class FrameWriter {
   FramesSaved saved_;               ///< every sealed segment
   std::optional<hdf5::File> open_;  ///< the segment that is being written
   std::vector<FrameRecord> frames_;
-  std::vector<int> first_;       ///< as in the topology written last
+  std::vector<int> cell_;        ///< as in the topology written last
+  std::vector<int> first_;       ///< likewise
   FrameRecord topology_record_;  ///< of the topology written last
   std::string topology_;         ///< its group
   bool topology_here_ = false;   ///< it is in the open segment
@@ -118,6 +119,9 @@ class FrameReader {
   hdf5::File file_;
 };
 
+/// The numbers of a frame's cells, from where each begins among the nodes. Throws Error(input_output) where they do not
+/// ascend.
+std::vector<int> cells_of(const hdf5::File& file, const std::string& group, const std::vector<int>& first);
 /// All cells have the same number of nodes; `first` as in OutlineSnapshot.
 bool equal_cells(const std::vector<int>& first);
 /// The datasets that a frame's fields may have, in the order of frames.xmf.

@@ -45,6 +45,7 @@ void FrameWriter::read_back(const std::filesystem::path& source, std::size_t fra
         topologies_ = std::max(topologies_, std::stoi(topology.substr(topology.rfind('/') + 1)) + 1);
         first_.clear();
         for (const double node : file.read(topology + "/first")) first_.push_back(static_cast<int>(node));
+        cell_ = cells_of(file, topology, first_);
         topology_record_ = {};
         topology_record_.nodes = static_cast<std::size_t>(first_.back());
         topology_record_.cells = first_.size() - 1;

@@ -71,6 +71,7 @@ void arrange(std::vector<Point>& loop) {
 
 observe::OutlineSnapshot middle_sections(const observe::OutlineSnapshot& s, int points) {
   observe::OutlineSnapshot sections;
+  sections.cell = s.cell;
   sections.first.push_back(0);
   auto triangle = s.triangles.begin();
   for (std::size_t cell = 0; cell + 1 < s.first.size(); ++cell) {

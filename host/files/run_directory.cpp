@@ -12,6 +12,7 @@
 #include "frames.hpp"
 #include "json/document.hpp"
 #include "log.hpp"
+#include "observe/cell_traffic.hpp"
 #include "refined_folder.hpp"
 #include "tables.hpp"
 #include "verify.hpp"
@@ -155,7 +156,7 @@ RunDirectory::RunDirectory(std::filesystem::path directory, const scene::Scene& 
   remove_files(directory_, written_by_a_run);
   if (data == DataFiles::tables) kept_ = Kept::for_now;
   files_->log.emplace(directory_ / "log.jsonl", kept_);
-  files_->tables.emplace(directory_, observe::RunKind(scene.domain.dimension(), scene.domain.is_open()), kept_);
+  files_->tables.emplace(directory_, observe::kind_of(scene), kept_);
   if (data == DataFiles::all) files_->frames.emplace(directory_ / "frames.h5", scene);
   if (scene.document) write_file(directory_ / "scene.json", scene_text(*scene.document), kept_);
 }
@@ -168,7 +169,7 @@ void RunDirectory::go_back(const DirectoryMark& mark) {
   remove_files(directory_, [](const std::string& name) {
     return is_partial(name) || name == "summary.json" || name == "report.html" || name == "frames.xmf";
   });
-  files_->tables.emplace(directory_, observe::RunKind(scene_.domain.dimension(), scene_.domain.is_open()), mark.tables);
+  files_->tables.emplace(directory_, observe::kind_of(scene_), mark.tables);
   files_->log->go_on(mark.log_s);
   if (scene_.document) write_file(directory_ / "scene.json", scene_text(*scene_.document));
 }

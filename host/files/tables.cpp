@@ -4,6 +4,7 @@
 #include <cmath>
 #include <variant>
 
+#include "observe/cell_traffic.hpp"
 #include "observe/observables.hpp"
 
 namespace rouleau::files {

@@ -52,20 +52,29 @@ class RestWatch {
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RestWatch, step_, old_)
 
  private:
-  /// Calls function(nodes, places of these) on the first rank for some nodes of all cells after others.
+  /// Calls function(nodes, places of these) on the first rank for some nodes of all cells after others. Of a cell that
+  /// is not there all lie in the far corner `nowhere`, so that one that comes or leaves moves.
   template <int D, class Function>
   static void for_places(const core::CellNodes& cells, const core::GhostCells<D>* ghosts, Function function) {
+    constexpr double nowhere = -1e9;
     const auto add = [&](int cell, std::vector<double>& values) {
+      if (!cells.knows(cell)) return;
+      values.push_back(cell);
       for (int i = cells.cells[cell].first; i < cells.cells[cell].end(); ++i) {
         for (int k = 0; k < D; ++k) values.push_back(cells.position[k][i]);
       }
     };
     core::give_in_order<double>(ghosts, cells, add, [&](Range run, const std::vector<double>& values) {
+      const Range nodes{cells.cells[run.begin].first, cells.cells[run.end - 1].end()};
       core::CellNodes some;
-      for (std::size_t i = 0; i < values.size(); i += D) {
-        for (int k = 0; k < D; ++k) some.position[k].push_back(values[i + k]);
+      for (int k = 0; k < D; ++k) some.position[k].assign(static_cast<std::size_t>(nodes.end - nodes.begin), nowhere);
+      for (auto value = values.begin(); value != values.end();) {
+        const core::CellRange& cell = cells.cells[static_cast<std::size_t>(*value++)];
+        for (int i = cell.first; i < cell.end(); ++i) {
+          for (int k = 0; k < D; ++k) some.position[k][i - nodes.begin] = *value++;
+        }
       }
-      function(Range{cells.cells[run.begin].first, cells.cells[run.end - 1].end()}, some);
+      function(nodes, some);
     });
   }
   struct OldPlaces {

@@ -1,6 +1,7 @@
 #include "aggregate_history.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "aggregates.hpp"
 
@@ -10,12 +11,20 @@ namespace {
 
 constexpr std::size_t most_cells_with_images = 200;  ///< of more, pairs that have met would fill checkpoints
 
+std::vector<int> numbers_of(const Snapshot& snapshot) {
+  std::vector<int> cells;
+  for (const CellSnapshot& cell : snapshot.cells) cells.push_back(cell.cell);
+  return cells;
+}
+
 /// Contacts between different cells whose types attract each other.
 std::vector<ContactSnapshot> joining(const Snapshot& snapshot,
                                      const std::vector<std::array<std::string, 2>>& attracting) {
   std::vector<ContactSnapshot> joins;
+  const std::vector<int> cells = numbers_of(snapshot);
+  const auto type_of = [&](int cell) -> const std::string& { return snapshot.cells[place_of(cell, cells)].type; };
   for (const ContactSnapshot& contact : snapshot.contacts) {
-    const std::string &a = snapshot.cells[contact.cell_a].type, &b = snapshot.cells[contact.cell_b].type;
+    const std::string &a = type_of(contact.cell_a), &b = type_of(contact.cell_b);
     const auto attracts = [&](const auto& pair) {
       return (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
     };
@@ -26,17 +35,24 @@ std::vector<ContactSnapshot> joining(const Snapshot& snapshot,
 }
 
 /// Cells that hang together by these contacts, each group and all groups by their smallest cell.
-std::vector<std::vector<int>> groups_by(const std::vector<ContactSnapshot>& contacts, std::size_t cells) {
+std::vector<std::vector<int>> groups_by(const std::vector<ContactSnapshot>& contacts, std::vector<int> cells) {
   std::vector<CellContact> pairs;
   pairs.reserve(contacts.size());
   for (const ContactSnapshot& contact : contacts) pairs.push_back({contact.cell_a, contact.cell_b, {}, 0, 0});
-  const std::vector<int> label = find_aggregates(static_cast<int>(cells), pairs).label;
+  const Aggregates found = find_aggregates(std::move(cells), pairs);
   std::map<int, std::vector<int>> groups;
-  for (std::size_t cell = 0; cell < cells; ++cell) groups[label[cell]].push_back(static_cast<int>(cell));
+  for (std::size_t i = 0; i < found.cells.size(); ++i) groups[found.label[i]].push_back(found.cells[i]);
   std::vector<std::vector<int>> result;
   result.reserve(groups.size());
   for (auto& [first, members] : groups) result.push_back(std::move(members));
   return result;
+}
+
+/// Those of two cells or more.
+std::vector<std::vector<int>> several(const std::vector<std::vector<int>>& members) {
+  std::vector<std::vector<int>> groups;
+  std::copy_if(members.begin(), members.end(), std::back_inserter(groups), [](const auto& m) { return m.size() > 1; });
+  return groups;
 }
 
 }  // namespace
@@ -58,27 +74,26 @@ std::vector<std::array<int, 2>> AggregateHistory::follow_images(const std::vecto
 }
 
 void AggregateHistory::follow(const Snapshot& snapshot, const std::vector<std::array<std::string, 2>>& attracting) {
+  count_ = snapshot.aggregate_count;
   if (snapshot.cells.empty()) return;
   AggregateEvent event{snapshot.strain, snapshot.time, snapshot.aggregate_count, {}, false};
-  std::vector<int> slot(snapshot.cells.size(), -1);
+  std::map<int, std::size_t> slot;
   for (const CellSnapshot& cell : snapshot.cells) {
-    int& s = slot[cell.aggregate];
-    if (s < 0) {
-      s = static_cast<int>(event.members.size());
-      event.members.emplace_back();
-    }
-    event.members[s].push_back(cell.cell);
+    const auto [s, made] = slot.try_emplace(cell.aggregate, event.members.size());
+    if (made) event.members.emplace_back();
+    event.members[s->second].push_back(cell.cell);
     event.through_image = event.through_image || cell.through_image;
   }
   if (!attracting.empty()) {
     const std::vector<ContactSnapshot> joins = joining(snapshot, attracting);
-    event.joined = groups_by(joins, snapshot.cells.size());
+    event.joined = groups_by(joins, numbers_of(snapshot));
     if (event.joined == event.members) event.joined.clear();
     if (snapshot.cells.size() <= most_cells_with_images) event.met_images = follow_images(joins);
   }
-  const bool changed = events_.empty() || events_.back().members != event.members ||
-                       events_.back().through_image != event.through_image || events_.back().joined != event.joined ||
-                       !event.met_images.empty();
+  // Cells that come alone and leave alone are no change.
+  const bool changed = events_.empty() || several(events_.back().members) != several(event.members) ||
+                       events_.back().through_image != event.through_image ||
+                       several(events_.back().together()) != several(event.together()) || !event.met_images.empty();
   if (!changed) return;
   if (snapshot.cells.size() > most_cells_remembered && events_.size() > 1)
     events_.back().members = events_.back().joined = {};

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "core/contact/cell_grid.hpp"
 #include "core/contact/surface_patches.hpp"
@@ -134,30 +135,41 @@ std::vector<double> smallest_gaps(core::Surroundings<2>& around, const core::Dom
   return gaps;
 }
 
+std::size_t place_of(int number, const std::vector<int>& ascending) {
+  const auto guess = static_cast<std::size_t>(number);  // right where all are there
+  if (guess < ascending.size() && ascending[guess] == number) return guess;
+  return static_cast<std::size_t>(std::lower_bound(ascending.begin(), ascending.end(), number) - ascending.begin());
+}
+
 Aggregates find_aggregates(int cells, const std::vector<CellContact>& contacts) {
+  std::vector<int> all(static_cast<std::size_t>(cells));
+  std::iota(all.begin(), all.end(), 0);
+  return find_aggregates(std::move(all), contacts);
+}
+
+Aggregates find_aggregates(std::vector<int> cells, const std::vector<CellContact>& contacts) {
   Aggregates result;
-  result.label.resize(static_cast<std::size_t>(cells));
-  std::iota(result.label.begin(), result.label.end(), 0);
-  // Labels only ever fall, so repeating until nothing changes ends with the smallest index of each component.
+  result.label = cells;
+  // Labels only ever fall, so repeating until nothing changes ends with the smallest number of each component.
   for (bool changed = true; changed;) {
     changed = false;
     for (const CellContact& c : contacts) {
-      int &a = result.label[c.cell_a], &b = result.label[c.cell_b];
+      int &a = result.label[place_of(c.cell_a, cells)], &b = result.label[place_of(c.cell_b, cells)];
       if (a == b) continue;
       a = b = std::min(a, b);
       changed = true;
     }
   }
-  std::vector<bool> crossed(static_cast<std::size_t>(cells), false);
+  std::vector<bool> crossed(cells.size(), false);
   for (const CellContact& c : contacts) {
-    if (!(c.image == core::ImageShift{})) crossed[result.label[c.cell_a]] = true;
+    if (!(c.image == core::ImageShift{})) crossed[place_of(result.label[place_of(c.cell_a, cells)], cells)] = true;
   }
-  result.through_image.resize(static_cast<std::size_t>(cells));
-  for (int i = 0; i < cells; ++i) {
-    const auto label = static_cast<std::size_t>(result.label[i]);
-    result.through_image[i] = crossed[label];
-    if (result.label[i] == i) ++result.count;
+  result.through_image.resize(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    result.through_image[i] = crossed[place_of(result.label[i], cells)];
+    if (result.label[i] == cells[i]) ++result.count;
   }
+  result.cells = std::move(cells);
   return result;
 }
 

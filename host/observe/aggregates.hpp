@@ -35,11 +35,17 @@ std::vector<double> smallest_gaps(core::Surroundings<3>& around, const core::Dom
 
 struct Aggregates {
   int count = 0;
-  std::vector<int> label;           ///< of each cell: smallest index in its aggregate
-  std::vector<bool> through_image;  ///< of each cell: its aggregate has a contact across the periodic border
+  std::vector<int> cells;           ///< those that there are, ascending
+  std::vector<int> label;           ///< of each of them: the smallest one of its aggregate
+  std::vector<bool> through_image;  ///< of each of them: its aggregate has a contact across the periodic border
 };
 
-/// Connected components of the contacts.
+/// Where a number stands in a list of ascending ones that has it.
+std::size_t place_of(int number, const std::vector<int>& ascending);
+
+/// Connected components of the contacts between these cells, whose numbers ascend.
+Aggregates find_aggregates(std::vector<int> cells, const std::vector<CellContact>& contacts);
+/// Of so many cells, all of which are there.
 Aggregates find_aggregates(int cells, const std::vector<CellContact>& contacts);
 
 }  // namespace rouleau::observe

@@ -74,7 +74,7 @@ constexpr Observable instant_columns[] = {
 constexpr Observable cell_columns[] = {
     {.name = "cell",
      .unit = "",
-     .doc = "number of the cell, from 0 in the scene's order",
+     .doc = "number of the cell, from 0 in the scene's order; no other cell gets it. A row is there while the cell is",
      .value = cell<&CellSnapshot::cell>},
     {.name = "type", .unit = "", .doc = "its type", .value = cell<&CellSnapshot::type>},
     {.name = "x",
@@ -421,6 +421,7 @@ std::vector<Observable> columns_of_aggregates() { return with_instant(aggregate_
 std::vector<Observable> columns_of_series() {
   std::vector<Observable> all = with_instant(series_columns);
   for (const Observable& observable : columns_at_openings()) all.push_back(observable);
+  for (const Observable& column : columns_of_traffic()) all.push_back(column);
   return all;
 }
 std::vector<Observable> columns_of_aggregate_sizes() { return with_instant(size_columns); }

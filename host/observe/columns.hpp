@@ -11,6 +11,8 @@ namespace rouleau::observe {
 std::vector<Observable> columns_of_cells();
 std::vector<Observable> columns_of_aggregates();
 std::vector<Observable> columns_of_series();
+/// Those of them that are there where cells may come or leave (cell_traffic.hpp).
+std::vector<Observable> columns_of_traffic();
 std::vector<Observable> columns_of_aggregate_sizes();
 
 }  // namespace rouleau::observe

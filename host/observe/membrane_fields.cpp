@@ -1,5 +1,7 @@
 #include "membrane_fields.hpp"
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "core/solver/in_order.hpp"
@@ -40,13 +42,19 @@ MembraneSnapshot observe_membranes(core::AnySolver<D>& solver, const units::Latt
   const auto& cells = solver.cells();
   auto* const tasks = solver.cell_tasks();
   MembraneSnapshot snapshot;
-  for (const core::CellRange& cell : cells.cells) snapshot.first.push_back(cell.first);
-  snapshot.first.push_back(cells.node_count());
+  for (const int cell : cells.own_cells()) snapshot.cell.push_back(cell);
+  snapshot.cell = core::to_first(solver.ranks(), std::move(snapshot.cell));
+  std::sort(snapshot.cell.begin(), snapshot.cell.end());
+  snapshot.first.push_back(0);
+  for (const int cell : snapshot.cell) snapshot.first.push_back(snapshot.first.back() + cells.cells[cell].count);
   // Adds a field of which add(cell, values) appends those of a cell's nodes.
   const auto field = [&](const char* name, const char* unit, int components, auto add) {
     snapshot.fields.push_back({name, unit, components, [&cells, tasks, add](const Field::Take& take) {
+                                 const auto add_known = [&](int cell, std::vector<double>& values) {
+                                   if (cells.knows(cell)) add(cell, values);
+                                 };
                                  core::give_in_order<double>(
-                                     tasks->ghosts(), cells, add,
+                                     tasks->ghosts(), cells, add_known,
                                      [&](Range, const std::vector<double>& values) { take(values); });
                                }});
   };

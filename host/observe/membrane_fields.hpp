@@ -8,7 +8,8 @@
 namespace rouleau::observe {
 
 /// Places, tensions and, of surfaces, curvatures of a solver with cells, whose forces have been computed. What the
-/// fields give is computed when it is asked for: the solver must be there until then, and be where it is.
+/// fields give is computed when it is asked for: the solver must be there until then, and be where it is. All ranks
+/// together; which cells there are the first one knows.
 template <int D>
 MembraneSnapshot observe_membranes(core::AnySolver<D>& solver, const units::LatticeUnits& units);
 

@@ -34,9 +34,11 @@ using Value = std::variant<std::monostate, double, long, bool, std::string>;
 /// What a run has that some columns are for.
 struct RunKind {
   // NOLINTNEXTLINE(google-explicit-constructor): a number of dimensions says it of most
-  RunKind(int dimensions, bool openings = false) : dimension(dimensions), open(openings) {}
+  RunKind(int dimensions, bool openings = false, bool cells_pass = false)
+      : dimension(dimensions), open(openings), traffic(cells_pass) {}
   int dimension;
-  bool open;  ///< fluid goes through openings
+  bool open;     ///< fluid goes through openings
+  bool traffic;  ///< cells may come or leave
 };
 
 struct Observable {
@@ -50,9 +52,10 @@ struct Observable {
   bool in_space = false;        ///< there in three dimensions only
   bool in_plane = false;        ///< there in two dimensions only
   bool at_openings = false;     ///< there only where fluid goes through openings
+  bool of_traffic = false;      ///< there where cells may come or leave (has_traffic)
 
   [[nodiscard]] bool is_in(const RunKind& run) const {
-    return !(run.dimension == 3 ? in_plane : in_space) && (run.open || !at_openings);
+    return !(run.dimension == 3 ? in_plane : in_space) && (run.open || !at_openings) && (run.traffic || !of_traffic);
   }
   /// The column's name: the name and the unit, "kinetic_energy_J_per_m".
   [[nodiscard]] std::string column() const;

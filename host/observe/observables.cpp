@@ -81,7 +81,8 @@ nlohmann::json columns_json() {
                          {"has_means", o.has_means},
                          {"in_space", o.in_space},
                          {"in_plane", o.in_plane},
-                         {"at_openings", o.at_openings}});
+                         {"at_openings", o.at_openings},
+                         {"of_traffic", o.of_traffic}});
     list.push_back({{"name", table.name}, {"columns", std::move(columns)}});
   }
   return list;

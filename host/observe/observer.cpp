@@ -45,28 +45,6 @@ ContactSnapshot in_si(const CellContact& c, double length) {
   return s;
 }
 
-/// The change of a cell that is the largest: one that is no number above all, of these the last cell's, as of equal
-/// ones the first one's.
-struct Change {
-  double share = 0;
-  int cell = -1;
-};
-bool larger(const Change& a, const Change& b) {
-  const bool finite_a = std::isfinite(a.share), finite_b = std::isfinite(b.share);
-  if (!finite_a || !finite_b) return !finite_a && (finite_b || a.cell > b.cell);
-  return a.share != b.share ? a.share > b.share : a.cell >= 0 && (b.cell < 0 || a.cell < b.cell);
-}
-/// Of all ranks' cells, each change(cell).
-template <int D, class ChangeOf>
-Change largest_change(const core::CellNodes& cells, const core::Ranks<D>& ranks, ChangeOf change) {
-  Change largest;
-  for (const int c : cells.own_cells()) {
-    const Change here{std::abs(change(c)), c};
-    if (here.share != 0 && larger(here, largest)) largest = here;
-  }
-  return core::best_of_all(ranks, largest, larger);
-}
-
 }  // namespace
 
 Observer::Observer(const scene::Scene& scene) : scene_(&scene), domain_(scene::lattice_domain(scene)) {}
@@ -74,11 +52,43 @@ Observer::Observer(const scene::Scene& scene) : scene_(&scene), domain_(scene::l
 template <class Cells>
 void Observer::begin_with(const Cells& cells) {
   for (int k = 0; k < cells.cell_count(); ++k) {
-    angle_.push_back(scene_->cells[angle_.size()].angle);
-    tank_treading_angle_.push_back(0);
-    initial_area_.push_back(enclosed(cells, k));
-    marker_.push_back(outermost(cells, k));
+    const auto number = static_cast<int>(angle_.size());
+    if (cells.knows(k)) {
+      begin_with(cells, k, number);
+    } else {
+      make_room_for(number);
+    }
   }
+}
+
+void Observer::make_room_for(int cell) {
+  const auto count = std::max(angle_.size(), static_cast<std::size_t>(cell) + 1);
+  angle_.resize(count, 0);
+  tank_treading_angle_.resize(count, std::nan(""));
+  initial_area_.resize(count, std::nan(""));
+  marker_.resize(count, 0);
+}
+
+template <class Cells>
+void Observer::begin_with(const Cells& cells, int k, int number) {
+  make_room_for(number);
+  const auto at = static_cast<std::size_t>(number);
+  angle_[at] = scene_->cells[at].angle;
+  tank_treading_angle_[at] = std::nan("");
+  initial_area_[at] = enclosed(cells, k);
+  marker_[at] = outermost(cells, k);
+}
+
+bool Observer::fits(const core::CellNodes& nodes) const {
+  const std::size_t count = initial_area_.size();
+  if (angle_.size() != count || tank_treading_angle_.size() != count || marker_.size() != count ||
+      count > nodes.cells.size())
+    return false;
+  for (const int c : nodes.known_cells()) {
+    const auto k = static_cast<std::size_t>(c);
+    if (k >= count || marker_[k] < 0 || marker_[k] >= nodes.cells[k].count) return false;
+  }
+  return true;
 }
 
 template <class Cells, int D>
@@ -145,8 +155,7 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
   const std::vector<double> gaps = smallest_gaps(around, domain);
   std::vector<CellMeasures> measures;
   for (const int c : cells.own_cells()) {
-    const int marker = marker_.empty() ? 0 : marker_[c];  // an outline's first node, also where a run goes on
-    measures.push_back(measure(cells, c, domain, region.get(), marker));
+    measures.push_back(measure(cells, c, domain, region.get(), marker_[c]));
     measures.back().gap = gaps[c];
   }
   measures = core::to_first(ranks, std::move(measures));
@@ -155,18 +164,21 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
                    [](const CellContact& a, const CellContact& b) { return a.cell_a < b.cell_a; });
   std::sort(measures.begin(), measures.end(),
             [](const CellMeasures& a, const CellMeasures& b) { return a.cell < b.cell; });
-  const Aggregates aggregates = find_aggregates(cells.cell_count(), contacts);
+  std::vector<int> there;
+  there.reserve(measures.size());
+  for (const CellMeasures& m : measures) there.push_back(m.cell);
+  const Aggregates aggregates = find_aggregates(std::move(there), contacts);
   count_aggregates(aggregates, snapshot);
   for (const CellContact& contact : contacts) snapshot.contacts.push_back(in_si<D>(contact, length));
   std::vector<Eigen::Vector2d> centers;  // as seen along z
   snapshot.cells.reserve(measures.size());
   for (const CellMeasures& m : measures) {
-    const auto k = static_cast<std::size_t>(m.cell);
+    const std::size_t k = centers.size();
     centers.emplace_back(m.x, m.y);
     CellSnapshot s;
     follow_angles(m, s);
     s.cell = m.cell;
-    s.type = scene_->cell_types[cells.cells[k].type].name;
+    s.type = scene_->cell_types[cells.cells[m.cell].type].name;
     s.x = units::coordinate(m.x, length);
     s.y = units::coordinate(m.y, length);
     s.deformation = m.deformation;
@@ -185,7 +197,6 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
     snapshot.cells.push_back(std::move(s));
   }
   snapshot.rotation = rotation_.follow(contacts, aggregates, centers, domain_);
-  started_ = true;
 }
 
 void Observer::follow_angles(const CellMeasures& measures, CellSnapshot& snapshot) {
@@ -193,7 +204,7 @@ void Observer::follow_angles(const CellMeasures& measures, CellSnapshot& snapsho
   const bool round = std::isnan(measures.long_axis);
   double& treaded = tank_treading_angle_[cell];
   if (!round) angle_[cell] = continued(measures.long_axis, angle_[cell], std::numbers::pi);
-  treaded = started_ ? continued(measures.marker, treaded, 2 * std::numbers::pi) : measures.marker;
+  treaded = std::isnan(treaded) ? measures.marker : continued(measures.marker, treaded, 2 * std::numbers::pi);
   snapshot.angle = round ? std::nan("") : angle_[cell];
   snapshot.tank_treading_angle = treaded;
 }
@@ -305,6 +316,8 @@ void Observer::start_stage() { initial_mass_ = std::nan(""); }
 
 template void Observer::begin_with(const core::Membranes&);
 template void Observer::begin_with(const core::Surfaces&);
+template void Observer::begin_with(const core::Membranes&, int, int);
+template void Observer::begin_with(const core::Surfaces&, int, int);
 template double Observer::follow_area(const core::Membranes&, const core::Ranks<2>&, int*);
 template double Observer::follow_area(const core::Surfaces&, const core::Ranks<3>&, int*);
 template double Observer::area_leakage(const core::CellNodes&, const core::Ranks<2>&, int*);

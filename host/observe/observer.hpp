@@ -31,9 +31,12 @@ class Observer {
   Observer(const scene::Scene& scene, const Cells& cells) : Observer(scene) {
     begin_with(cells);
   }
-  /// The next cells, as they are placed; in their order.
+  /// The next cells, as they are placed; in their order. Of those that are not known nothing is read.
   template <class Cells>
   void begin_with(const Cells& cells);
+  /// A cell that comes: cell k of these, `number` in the scene. All ranks, and all get the same.
+  template <class Cells>
+  void begin_with(const Cells& cells, int k, int number);
 
   /// Mass is compared within a stage: a new density factor rescales the populations.
   void start_stage();
@@ -77,15 +80,13 @@ class Observer {
   [[nodiscard]] double mass_drift() const { return mass_drift_; }
   /// Of any segment at any output so far.
   [[nodiscard]] const core::StretchRange& stretch() const { return stretch_; }
-  /// Whether what it remembers is about so many cells.
-  [[nodiscard]] bool fits(const core::CellNodes& nodes) const {
-    const std::size_t cells = nodes.cells.size();
-    return initial_area_.size() == cells && angle_.size() == cells && tank_treading_angle_.size() == cells;
-  }
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(Observer, initial_area_, angle_, tank_treading_angle_, rotation_, started_, mach_max_,
+  /// Whether what it remembers is about these cells: all that are known.
+  [[nodiscard]] bool fits(const core::CellNodes& nodes) const;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(Observer, initial_area_, marker_, angle_, tank_treading_angle_, rotation_, mach_max_,
                                  area_drift_max_, mass_drift_, initial_mass_, stretch_)
 
  private:
+  void make_room_for(int cell);
   template <int D>
   void observe_cells(core::Surroundings<D>& around, const units::LatticeUnits& units, Snapshot& snapshot);
   void follow_angles(const CellMeasures& measures, CellSnapshot& snapshot);
@@ -97,11 +98,11 @@ class Observer {
   core::Domain<2> domain_;
   /// Of walls of any shape, made when first asked for.
   std::tuple<std::vector<WallPoint<2>>, std::vector<WallPoint<3>>> wall_points_;
+  // Of each cell that is or was there.
   std::vector<double> initial_area_;                 ///< or volumes
-  std::vector<int> marker_;                          ///< of each cell: the node that tells its tank treading
-  std::vector<double> angle_, tank_treading_angle_;  ///< last values, continuous
+  std::vector<int> marker_;                          ///< the node that tells its tank treading
+  std::vector<double> angle_, tank_treading_angle_;  ///< last values, continuous; NaN: none yet
   Rotation rotation_;
-  bool started_ = false;
   double mach_max_ = 0, area_drift_max_ = 0, mass_drift_ = 0;
   double initial_mass_ = std::numeric_limits<double>::quiet_NaN();  ///< none yet
   core::StretchRange stretch_;

@@ -85,9 +85,10 @@ double error_of(const Column& time, const Column& values, double begin, double m
 }
 
 /// Whether all (or, `any`, some two) of these cells share an aggregate.
-bool together(const std::vector<int>& label, const std::vector<int>& members, bool any) {
+template <class Instant>
+bool together(const Instant& instant, const std::vector<int>& members, bool any) {
   std::set<int> labels;
-  for (const int cell : members) labels.insert(label[cell]);
+  for (const int cell : members) labels.insert(instant.label[instant.place(cell)]);
   return any ? labels.size() < members.size() : labels.size() == 1;
 }
 
@@ -112,11 +113,12 @@ void RheologyHistory::follow(const Snapshot& snapshot) {
     stages_.push_back({snapshot.stage_name, std::move(first)});
     stage_ = snapshot.stage;
   }
-  Instant now{snapshot.strain - start_strain_, snapshot.time - start_time_, {}, {}, {}, {}};
+  Instant now{snapshot.strain - start_strain_, snapshot.time - start_time_, {}, {}, {}, {}, {}};
   for (const Observable& observable : averaged())
     now.values.push_back(std::get<double>(observable.value({.output = snapshot})));
   if (snapshot.cells.size() <= most_cells_remembered) {
     for (const CellSnapshot& cell : snapshot.cells) {
+      now.cell.push_back(cell.cell);
       now.label.push_back(cell.aggregate);
       now.marker.push_back(cell.tank_treading_angle);
       now.axis.push_back(cell.angle);
@@ -158,14 +160,19 @@ Json RheologyHistory::means(const StageHistory& stage) {
 Json RheologyHistory::dissociation(const StageHistory& stage) {
   Json result = Json::array();
   std::map<int, std::vector<int>> aggregates;
-  const std::vector<int>& start = stage.instants.front().label;
-  for (std::size_t cell = 0; cell < start.size(); ++cell) aggregates[start[cell]].push_back(static_cast<int>(cell));
+  const Instant& start = stage.instants.front();
+  for (std::size_t i = 0; i < start.cell.size(); ++i) aggregates[start.label[i]].push_back(start.cell[i]);
   for (const auto& [label, members] : aggregates) {
     if (members.size() < 2) continue;
     const auto since = [&, &cells = members](bool any) -> Json {
-      std::size_t i = stage.instants.size();
-      while (i > 0 && !together(stage.instants[i - 1].label, cells, any)) --i;
-      if (i == stage.instants.size()) return nullptr;
+      const auto all_there = [&](const Instant& instant) {
+        return std::all_of(cells.begin(), cells.end(), [&](int cell) { return instant.has(cell); });
+      };
+      std::size_t end = 1;
+      while (end < stage.instants.size() && all_there(stage.instants[end])) ++end;
+      std::size_t i = end;
+      while (i > 0 && !together(stage.instants[i - 1], cells, any)) --i;
+      if (i == end) return nullptr;
       return {{"strain", stage.instants[i].strain},
               {"strain_before", stage.instants[i - 1].strain},
               {"time_s", stage.instants[i].time}};
@@ -179,20 +186,23 @@ Json RheologyHistory::rotation(const StageHistory& stage) {
   Json result = Json::array();
   const auto& instants = stage.instants;
   const double turn = 2 * std::numbers::pi;
-  for (std::size_t cell = 0; cell < instants.back().marker.size(); ++cell) {
+  for (const int cell : instants.back().cell) {
     // A round cell has no long axis (NaN) and does not tumble.
     const auto at = [&](std::size_t i) {
-      const double axis = instants[i].axis[cell];
-      return Turned{instants[i].strain, instants[i].time, instants[i].marker[cell], std::isfinite(axis) ? axis : 0.0};
+      const std::size_t k = instants[i].place(cell);
+      const double axis = instants[i].axis[k];
+      return Turned{instants[i].strain, instants[i].time, instants[i].marker[k], std::isfinite(axis) ? axis : 0.0};
     };
     const Turned end = at(instants.size() - 1);
-    const std::size_t half = second_half(instants);
+    std::size_t came = instants.size() - 1;  // the first instant at which it was there
+    while (came > 0 && instants[came - 1].has(cell)) --came;
+    const std::size_t half = std::max(came, second_half(instants));
     Turned start = at(half);
     const auto turns_since = [&](const Turned& t) { return std::floor(std::abs(end.marker - t.marker) / turn); };
     double turns = turns_since(start);
-    for (std::size_t i = half; turns < 1 && i-- > 0;) turns = std::min(1.0, turns_since(at(i)));
+    for (std::size_t i = half; turns < 1 && i-- > came;) turns = std::min(1.0, turns_since(at(i)));
     // The last moment at which the outline was so many turns behind its end, between two outputs.
-    for (std::size_t i = instants.size() - 1; turns >= 1 && i-- > 0;) {
+    for (std::size_t i = instants.size() - 1; turns >= 1 && i-- > came;) {
       const Turned before = at(i), after = at(i + 1);
       const double behind = std::abs(end.marker - before.marker), behind_after = std::abs(end.marker - after.marker);
       if (behind < turns * turn) continue;
@@ -217,7 +227,11 @@ Json RheologyHistory::rotation(const StageHistory& stage) {
 }
 
 bool RheologyHistory::fits() const {
-  const auto fitting = [](const Instant& instant) { return instant.values.size() == averaged().size(); };
+  const auto fitting = [](const Instant& instant) {
+    const std::size_t cells = instant.cell.size();
+    return instant.values.size() == averaged().size() && instant.label.size() == cells &&
+           instant.marker.size() == cells && instant.axis.size() == cells;
+  };
   return std::all_of(stages_.begin(), stages_.end(), [&](const StageHistory& stage) {
     return std::all_of(stage.instants.begin(), stage.instants.end(), fitting);
   });

@@ -1,8 +1,10 @@
 // What a run says about the rheology of its suspension over time: means, break-up of aggregates, tank treading.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
+#include "aggregates.hpp"
 #include "json/json.hpp"
 #include "snapshot.hpp"
 
@@ -24,11 +26,13 @@ class RheologyHistory {
   ///   dissociation       of each aggregate of two or more cells at the stage's start, {members, parted, separate};
   ///                      each of the two {strain, strain_before, time_s} from the start of the stage, or null: at
   ///                      `strain` the output after which its members never again were all in one aggregate (parted),
-  ///                      or no two of them in one (separate); `strain_before`: the output before that one
-  ///   rotation           of each cell, {cell, turns, strain, time_s, tank_treading_rad_per_strain, tumbling_...,
-  ///                      tank_treading_rad_per_s, tumbling_...}: mean rates of the outline about the centroid relative
-  ///                      to the long axis, and of the long axis, over the last whole turns of the outline (as many as
-  ///                      fit into the second half, one if there is one at all; turns 0: over the second half)
+  ///                      or no two of them in one (separate); `strain_before`: the output before that one. Once one of
+  ///                      them has left the domain nothing more is said of an aggregate
+  ///   rotation           of each cell at the end, {cell, turns, strain, time_s, tank_treading_rad_per_strain,
+  ///                      tumbling_..., tank_treading_rad_per_s, tumbling_...}: mean rates of the outline about the
+  ///                      centroid relative to the long axis, and of the long axis, over the last whole turns of the
+  ///                      outline (as many as fit into the second half, one if there is one at all; turns 0: over the
+  ///                      second half)
   [[nodiscard]] nlohmann::json stages() const;
   /// Whether what it remembers has a value for each column that has means: one of another version may not.
   [[nodiscard]] bool fits() const;
@@ -39,9 +43,12 @@ class RheologyHistory {
     double strain, time;         ///< since the start of the stage
     std::vector<double> values;  ///< of the observables that have means
     // Of each cell that is remembered.
+    std::vector<int> cell;  ///< ascending
     std::vector<int> label;
     std::vector<double> marker, axis;  ///< rad, continuous
-    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Instant, strain, time, values, label, marker, axis)
+    [[nodiscard]] bool has(int number) const { return std::binary_search(cell.begin(), cell.end(), number); }
+    [[nodiscard]] std::size_t place(int number) const { return place_of(number, cell); }
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Instant, strain, time, values, cell, label, marker, axis)
   };
   struct StageHistory {
     std::string name;

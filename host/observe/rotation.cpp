@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <set>
 #include <tuple>
 
 namespace rouleau::observe {
@@ -12,8 +13,8 @@ namespace {
 
 /// Shift of every cell that brings it beside its neighbours in the aggregate; the cell with the smallest index stays.
 struct Unwrapping {
-  std::vector<core::ImageShift> shift;
-  std::vector<bool> endless;  ///< by label: some way along the contacts leads back to an image of where it began
+  std::vector<core::ImageShift> shift;  ///< of each of the cells that there are
+  std::set<int> endless;  ///< labels: some way along the contacts leads back to an image of where it began
 };
 
 Unwrapping unwrap(const std::vector<CellContact>& contacts, const Aggregates& aggregates) {
@@ -24,11 +25,11 @@ Unwrapping unwrap(const std::vector<CellContact>& contacts, const Aggregates& ag
   };
   std::vector<std::vector<Step>> steps(cells);
   for (const CellContact& c : contacts) {
-    const auto a = static_cast<std::size_t>(c.cell_a), b = static_cast<std::size_t>(c.cell_b);
+    const std::size_t a = place_of(c.cell_a, aggregates.cells), b = place_of(c.cell_b, aggregates.cells);
     steps[a].push_back({b, c.image});
     steps[b].push_back({a, -c.image});
   }
-  Unwrapping result{std::vector<core::ImageShift>(cells), std::vector<bool>(cells, false)};
+  Unwrapping result{std::vector<core::ImageShift>(cells), {}};
   std::vector<bool> reached(cells, false);
   for (std::size_t root = 0; root < cells; ++root) {
     if (reached[root]) continue;
@@ -43,7 +44,7 @@ Unwrapping unwrap(const std::vector<CellContact>& contacts, const Aggregates& ag
           result.shift[step.to] = there;
           open.push_back(step.to);
         } else if (!(result.shift[step.to] == there)) {
-          result.endless[aggregates.label[cell]] = true;
+          result.endless.insert(aggregates.label[cell]);
         }
       }
     }
@@ -103,14 +104,14 @@ std::map<int, double> Rotation::follow(const std::vector<CellContact>& contacts,
                                        const std::vector<Eigen::Vector2d>& centers, const core::Domain<2>& domain) {
   const Unwrapping unwrapped = unwrap(contacts, aggregates);
   std::map<int, std::vector<int>> members;
-  for (std::size_t i = 0; i < aggregates.label.size(); ++i) members[aggregates.label[i]].push_back(static_cast<int>(i));
+  for (std::size_t i = 0; i < aggregates.label.size(); ++i) members[aggregates.label[i]].push_back(aggregates.cells[i]);
   std::map<int, double> angles;
   std::map<std::vector<int>, double> now;
   for (auto& [label, cells] : members) {
-    if (cells.size() < 2 || unwrapped.endless[label]) continue;
+    if (cells.size() < 2 || unwrapped.endless.contains(label)) continue;
     std::vector<Eigen::Vector2d> points;
     for (const int cell : cells) {
-      const auto k = static_cast<std::size_t>(cell);
+      const std::size_t k = place_of(cell, aggregates.cells);
       const Eigen::Vector2d shift(unwrapped.shift[k].x * domain.period(0), unwrapped.shift[k].y * domain.period(1));
       points.emplace_back(centers[k] + shift);
     }

@@ -12,7 +12,7 @@
 namespace rouleau::observe {
 
 struct CellSnapshot {
-  int cell;  ///< 0-based, in the order of the scene
+  int cell;  ///< its number in the scene, from 0, which no other cell gets when it has left
   std::string type;
   double x, y;         ///< centroid, m; x is not wrapped into the box
   double angle;        ///< of the long axis of the inertia ellipse, rad, continuous in time; NaN for a circle
@@ -43,9 +43,10 @@ struct ContactSnapshot {
   double contact_area = std::numeric_limits<double>::quiet_NaN();  ///< m2, the same of a surface
 };
 
-/// Outlines or surfaces of all cells, one after another, as frames keep them.
+/// Outlines or surfaces of all cells that are there, one after another, as frames keep them.
 struct OutlineSnapshot {
-  std::vector<int> first;       ///< first node of each cell, and the total at the end
+  std::vector<int> cell;        ///< their numbers, ascending
+  std::vector<int> first;       ///< first node of each of them, and the total at the end
   std::vector<double> x, y, z;  ///< m, not wrapped; the last is empty in two dimensions
   std::vector<double> tension;  ///< N/m of segment i (elastic and viscous laws together); of surfaces, the mean of the
                                 ///< triangles around node i
@@ -75,11 +76,12 @@ inline void give_all(const std::vector<Field>& fields) {
 
 using Triangles = std::vector<std::array<int, 3>>;
 
-/// Outlines or surfaces of all cells, one after another. Without cells there are no fields.
+/// Outlines or surfaces of all cells that are there, one after another. Without cells in the scene there are no fields.
 struct MembraneSnapshot {
-  std::vector<int> first;     ///< first node of each cell, and the total at the end
+  std::vector<int> cell;      ///< their numbers, ascending
+  std::vector<int> first;     ///< first node of each of them, and the total at the end
   std::vector<Field> fields;  ///< points, tension and, of surfaces, curvature (as OutlineSnapshot has them)
-  /// Of surfaces: the triangles of a cell, their nodes counted from its first; null of outlines.
+  /// Of surfaces: the triangles of the cell of this number, their nodes counted from its first; null of outlines.
   std::function<const Triangles&(int cell)> triangles = nullptr;
   [[nodiscard]] bool empty() const { return fields.empty(); }
 };
@@ -112,7 +114,7 @@ struct Snapshot {
   double strain = 0;  ///< accumulated over the stages
   int stage = 0;
   std::string stage_name;
-  std::vector<CellSnapshot> cells;
+  std::vector<CellSnapshot> cells;  ///< those that are there, by their numbers
   std::vector<ContactSnapshot> contacts;
   int aggregate_count = 0;  ///< single cells count too
   /// Angle of the line through an aggregate's outermost cells against x, rad, by its label, followed over turns while
@@ -137,7 +139,8 @@ struct Snapshot {
   double area_drift_max = 0;  ///< relative
   double area_leakage_max =
       0;  ///< relative: what the area correction kept from leaking within a strain of one, of the worst cell
-  double mass_drift = 0;  ///< relative
+  double mass_drift = 0;                               ///< relative
+  long cells_in = 0, cells_inside = 0, cells_out = 0;  ///< since the run began (CellTraffic)
   EnergySnapshot energy;
   MembraneSnapshot membranes;
   FieldSnapshot fields;

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "files/csv_reader.hpp"
 #include "files/file.hpp"
@@ -17,6 +18,7 @@
 #include "files/verify.hpp"
 #include "json/document.hpp"
 #include "observe/observables.hpp"
+#include "report_cells.hpp"
 #include "report_fields.hpp"
 #include "report_outlines.hpp"
 #include "report_surfaces.hpp"
@@ -53,28 +55,32 @@ Json picked(const std::vector<double>& values, const Selection& selection, doubl
   return result;
 }
 
-/// A line for each cell from a column of cells.csv, which has `count` cells for each output.
-Json lines(const std::vector<double>& column, std::size_t count, const Selection& selection, double factor) {
+/// A line for each cell from a column of cells.csv, from the output on at which it came to the last one.
+Json lines(const std::vector<double>& column, const CellRows& rows, const ShownCells& shown, const Selection& selection,
+           double factor) {
   constexpr int precision = 4;
   Json result = Json::array();
-  for (std::size_t cell = 0; cell < count; ++cell) {
+  for (std::size_t i = 0; i < shown.cells.size(); ++i) {
     Json line = Json::array();
-    for (const std::size_t output : selection)
-      line.push_back(shown_value(factor * column[output * count + cell], precision));
+    for (std::size_t k = shown.from[i]; k <= shown.to[i]; ++k) {
+      const std::optional<std::size_t> row = rows.row(selection[k], shown.cells[i]);
+      line.push_back(row ? shown_value(factor * column[*row], precision) : Json());
+    }
     result.push_back(std::move(line));
   }
   return result;
 }
 
 /// Speeds of all cells' centroids from the outputs before and after, laid out as a column of cells.csv, m/s.
-std::vector<double> cell_speeds(const files::StoredTable& cells, std::size_t count, std::size_t outputs) {
+std::vector<double> cell_speeds(const files::StoredTable& cells, const CellRows& rows, std::size_t outputs) {
   const auto x = cells.numbers("x_m"), y = cells.numbers("y_m"), time = cells.numbers("time_s");
-  std::vector<double> speeds(outputs * count, std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> speeds(rows.end(outputs - 1), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t output = 0; output < outputs; ++output) {
     const std::size_t before = output > 0 ? output - 1 : 0, after = std::min(output + 1, outputs - 1);
-    for (std::size_t cell = 0; cell < count; ++cell) {
-      const std::size_t a = before * count + cell, b = after * count + cell;
-      if (time[b] > time[a]) speeds[output * count + cell] = std::hypot(x[b] - x[a], y[b] - y[a]) / (time[b] - time[a]);
+    for (std::size_t row = rows.begin(output); row < rows.end(output); ++row) {
+      const std::size_t cell = rows.cell(row), a = rows.row(before, cell).value_or(row),
+                        b = rows.row(after, cell).value_or(row);
+      if (time[b] > time[a]) speeds[row] = std::hypot(x[b] - x[a], y[b] - y[a]) / (time[b] - time[a]);
     }
   }
   return speeds;
@@ -112,22 +118,28 @@ Json charts() {
   return list;
 }
 
-Json cell_data(const files::StoredTable& table, std::size_t count, std::size_t outputs, const Selection& selection) {
+Json cell_data(const files::StoredTable& table, const CellRows& rows, std::size_t outputs, const Selection& selection) {
   const auto types = table.texts("type");
-  Json cells{{"types", Json(std::vector<std::string>(types.begin(), types.begin() + long(count)))},
-             {"aggregate", Json::array()}};
+  const ShownCells shown_cells(rows, selection);
+  Json cells{{"ids", shown_cells.cells}, {"types", Json::array()}, {"aggregate", Json::array()}};
+  for (const std::size_t row : shown_cells.row) cells["types"].push_back(types[row]);
+  if (shown_cells.changes) cells["from"] = shown_cells.from;
   const auto aggregate = table.numbers("aggregate");
   for (const std::size_t output : selection) {
     Json labels = Json::array();
-    for (std::size_t cell = 0; cell < count; ++cell) labels.push_back(std::lround(aggregate[output * count + cell]));
+    for (const std::size_t cell : shown_cells.cells) {
+      const std::optional<std::size_t> row = rows.row(output, cell);
+      labels.push_back(row ? Json(std::lround(aggregate[*row])) : Json());
+    }
+    while (!labels.empty() && labels.back().is_null()) labels.erase(labels.size() - 1);
     cells["aggregate"].push_back(std::move(labels));
   }
   for (const observe::Observable& observable : observe::table("cells").observables) {
     if (observable.chart.empty()) continue;
     const Shown as = shown(observable);
-    cells[as.name] = lines(table.numbers(observable.column()), count, selection, as.factor);
+    cells[as.name] = lines(table.numbers(observable.column()), rows, shown_cells, selection, as.factor);
   }
-  cells["speed_um_per_s"] = lines(cell_speeds(table, count, outputs), count, selection, micro);
+  cells["speed_um_per_s"] = lines(cell_speeds(table, rows, outputs), rows, shown_cells, selection, micro);
   return cells;
 }
 
@@ -212,6 +224,17 @@ void add_instants(const files::StoredTable& series, const std::vector<std::size_
       series.has("shear_rate_1_per_s") ? picked(series.numbers("shear_rate_1_per_s"), selection) : Json();
 }
 
+/// All or none. `stride`: 0: no membranes.
+void add_frames(const files::FrameReader& reader, const std::filesystem::path& frames, const Selection& selection,
+                std::size_t stride, Json& data) {
+  const auto size = reader.size();
+  data["domain"] = {{"size_um", {size[0] * micro, size[1] * micro}}, {"periodic_y", reader.periodic_y()}};
+  Json outlines = stride > 0 ? outline_data(reader, selection, stride) : Json(), walls = wall_data(reader);
+  data["fields"] = field_data(frames, selection);
+  data["outlines"] = std::move(outlines), data["walls"] = std::move(walls);
+  if (stride > 0) data["surfaces"] = surface_data(reader, selection);
+}
+
 std::string words_without_cells(std::uintmax_t bytes) {
   return "No animation, no charts of cells: cells.csv has " + std::to_string(bytes / 1'000'000) +
          " MB, and a page is made of up to " + std::to_string(most_bytes / 1'000'000) + ". The files have all of it.";
@@ -249,7 +272,8 @@ Json report_data(const std::filesystem::path& directory) {
   const std::uintmax_t bytes = std::filesystem::file_size(directory / "cells.csv", missing);
   std::optional<files::StoredTable> cells;
   if (missing || bytes <= most_bytes) cells.emplace(directory / "cells.csv");
-  const std::size_t count = cells ? cells->count_of("cell") : 0;
+  std::optional<CellRows> rows;
+  if (cells && cells->rows() > 0) rows.emplace(*cells, series);
   std::size_t outputs = series.rows();
   Json damage = damage_of(directory, data["summary"]);
   // A run that goes on, or was killed, may lack the last rows of a file; one that has ended may not.
@@ -261,7 +285,7 @@ Json report_data(const std::filesystem::path& directory) {
     }
     outputs = std::min(outputs, has);
   };
-  if (count > 0) take("cells.csv", cells->rows() / count);
+  if (rows) take("cells.csv", rows->outputs());
 
   std::optional<files::FrameReader> reader;
   std::string note;
@@ -278,13 +302,14 @@ Json report_data(const std::filesystem::path& directory) {
     reader.emplace(directory / "frames.h5");
     take("frames.h5", static_cast<std::size_t>(reader->frames()));
     if (outputs > 0) {
-      if (reader->nodes(0) > most_nodes_read && drawn) {
+      const int fullest = rows ? static_cast<int>(std::min(rows->fullest(), outputs - 1)) : 0;
+      if (reader->nodes(fullest) > most_nodes_read && drawn) {
         drawn = false;
-        note = "No animation: a frame has " + std::to_string(reader->nodes(0)) +
+        note = "No animation: a frame has " + std::to_string(reader->nodes(fullest)) +
                " nodes of membranes, and a page is made of up to " + std::to_string(most_nodes_read) +
                ". frames.h5 has all of them.";
       }
-      if (drawn) nodes = reader->outlines(0).x.size();  // of their sections, where they are surfaces
+      if (drawn) nodes = reader->outlines(fullest).x.size();  // of their sections, where they are surfaces
       with_fields = field_outputs(directory / "frames.h5", most_fields);
     }
   } catch (const Error& error) {
@@ -293,22 +318,18 @@ Json report_data(const std::filesystem::path& directory) {
 
   auto aggregate_count = series.numbers("aggregate_count");
   aggregate_count.resize(outputs);
+  const std::size_t count = rows && rows->outputs() > 0 ? rows->count(rows->fullest()) : 0;
   const auto [selection, stride] = choose(aggregate_count, nodes, count, with_fields);
 
   data["shown"] = {{"outputs", selection.size()}, {"of", outputs}, {"node_stride", stride}};
   add_instants(series, selection, data);
   data["charts"] = charts();
   data["series"] = series_data(series, selection);
-  data["cells"] = count > 0 && outputs > 0 ? cell_data(*cells, count, outputs, selection) : Json(nullptr);
+  data["cells"] = count > 0 && outputs > 0 ? cell_data(*cells, *rows, outputs, selection) : Json(nullptr);
   data["outlines"] = data["fields"] = data["surfaces"] = data["walls"] = nullptr;
   if (reader && outputs > 0) {
     try {
-      const auto size = reader->size();
-      data["domain"] = {{"size_um", {size[0] * micro, size[1] * micro}}, {"periodic_y", reader->periodic_y()}};
-      Json outlines = drawn ? outline_data(*reader, selection, stride) : Json(), walls = wall_data(*reader);
-      data["fields"] = field_data(directory / "frames.h5", selection);
-      data["outlines"] = std::move(outlines), data["walls"] = std::move(walls);  // all or none
-      if (drawn) data["surfaces"] = surface_data(*reader, selection);
+      add_frames(*reader, directory / "frames.h5", selection, drawn ? stride : 0, data);
     } catch (const Error& error) {
       without_animation(error);
     }

@@ -21,8 +21,10 @@ bool has_run(const std::filesystem::path& directory);
 ///   series    name -> values per shown output; only those that the run wrote; the total energy without the fluid's
 ///             kinetic energy
 ///   shear_rate  of the walls per shown output, 1/s, null where they rest; null for runs of earlier versions
-///   cells     {types, aggregate, and name -> a line of values per shown output for each cell}: type of each cell,
-///             aggregate by output and cell; beside what has a chart speed_um_per_s, of the centroid
+///   cells     {ids, types, from, aggregate, and name -> a line of values for each cell}: of the cells that are there
+///             at some shown output, by their numbers `ids`, types and the shown output with which their lines begin;
+///             without `from` all lines have all outputs; aggregate by output and cell, null or cut off where that is
+///             not there; beside what has a chart speed_um_per_s, of the centroid
 ///   domain    {size_um, periodic_y}; absent without frames
 ///   outlines  outline_data() of the shown outputs (report_outlines.hpp), or null
 ///   fields    field_data() of the shown outputs (report_fields.hpp), or null

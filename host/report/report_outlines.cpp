@@ -77,36 +77,55 @@ double tension_scale(const Outlines& outlines, const std::vector<std::size_t>& s
   return *rank;
 }
 
+bool CellLayout::add(const observe::OutlineSnapshot& outlines, std::size_t stride) {
+  for (std::size_t k = 0; k < outlines.cell.size(); ++k) {
+    const std::size_t nodes =
+        (static_cast<std::size_t>(outlines.first[k + 1] - outlines.first[k]) + stride - 1) / stride;
+    if (nodes_.try_emplace(outlines.cell[k], nodes).first->second != nodes) return false;
+  }
+  there_.push_back(outlines.cell);
+  return true;
+}
+
+void CellLayout::put_into(Json& result) const {
+  Json &cells = result["cells"] = Json::array(), first = Json::array({0}), there = Json::array();
+  std::map<int, std::size_t> place;
+  for (const auto& [cell, nodes] : nodes_) {
+    place[cell] = cells.size();
+    cells.push_back(cell);
+    first.push_back(first.back().get<std::size_t>() + nodes);
+  }
+  for (const std::vector<int>& numbers : there_) {
+    Json places;  // null
+    if (numbers.size() < nodes_.size()) {
+      places = Json::array();
+      for (const int cell : numbers) places.push_back(place.at(cell));
+    }
+    there.push_back(std::move(places));
+  }
+  result["first"] = std::move(first);
+  result["there"] = std::move(there);
+}
+
 Json outline_data(const files::FrameReader& reader, const std::vector<std::size_t>& selection, std::size_t stride) {
   const auto size = reader.size();
   Json result{{"size_um", {size[0] * micro, size[1] * micro}},
               {"periodic_y", reader.periodic_y()},
-              {"first", Json::array()},
               {"origin_um", Json::array()},
               {"nodes", Json::array()}};
   const double quantum = quantum_of(std::hypot(size[0], size[1]));
   result["quantum_um"] = quantum * micro;
   const double scale = tension_scale([&](int output) { return reader.outlines(output); }, selection);
   result["tension"] = {{"scale_N_per_m", scale}, {"values", Json::array()}};
-  std::vector<int> first;
+  CellLayout layout;
   for (const std::size_t output : selection) {
     const auto outlines = reader.outlines(static_cast<int>(output));
-    if (first.empty()) {
-      first = outlines.first;
-      std::size_t shown_nodes = 0;
-      for (std::size_t cell = 0; cell < first.size(); ++cell) {
-        result["first"].push_back(shown_nodes);
-        if (cell + 1 < first.size()) {
-          const auto nodes = static_cast<std::size_t>(first[cell + 1] - first[cell]);
-          shown_nodes += (nodes + stride - 1) / stride;
-        }
-      }
-    }
-    if (first.empty() || outlines.first != first) return nullptr;
+    if (!layout.add(outlines, stride)) return nullptr;
     add_outlines(result, outlines, stride, quantum);
     result["tension"]["values"].push_back(tension_bytes(outlines, stride, scale));
   }
-  return first.empty() ? Json(nullptr) : result;
+  layout.put_into(result);
+  return layout.empty() ? Json(nullptr) : result;
 }
 
 std::string base64(const std::vector<unsigned char>& bytes) {

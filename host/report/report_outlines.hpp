@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,12 +14,28 @@ namespace rouleau::report {
 /// A report tells lengths in micrometres.
 inline constexpr double micro = 1e6;
 
-/// {size_um, periodic_y, quantum_um, first, origin_um, nodes, tension} of the outputs `selection`, one node in `stride`
-/// of every cell: nodes[k] is, for the k-th of them, base64 of little-endian int16 x, y of every node, in quanta from
-/// its cell's origin; tension {scale_N_per_m, values} of int8 for each node, the tension of the segment that begins
-/// there over the scale times 127. Null when there are no cells, or when the number of their nodes changes.
+/// {size_um, periodic_y, quantum_um, cells, first, there, origin_um, nodes, tension} of the outputs `selection`, one
+/// node in `stride` of every cell. cells, first: of all that are there at some output, their numbers and where their
+/// nodes begin if all are; there: of each output, places among them of those that are there, null: all are. nodes[k]
+/// is, for the k-th output, base64 of little-endian int16 x, y of every node that is there, in quanta from its cell's
+/// origin; tension {scale_N_per_m, values} of int8 for each node, the tension of the segment that begins there over the
+/// scale times 127. Null when there are no cells, or when the number of a cell's nodes changes.
 nlohmann::json outline_data(const files::FrameReader& reader, const std::vector<std::size_t>& selection,
                             std::size_t stride);
+
+/// Which cells the outputs of a page have, and how many nodes of each.
+class CellLayout {
+ public:
+  /// Those of the next output, one node in `stride`. False where a cell has another number of nodes than before.
+  bool add(const observe::OutlineSnapshot& outlines, std::size_t stride = 1);
+  [[nodiscard]] bool empty() const { return nodes_.empty(); }
+  /// cells, first and there, as outline_data has them.
+  void put_into(nlohmann::json& result) const;
+
+ private:
+  std::map<int, std::size_t> nodes_;     ///< of each cell
+  std::vector<std::vector<int>> there_;  ///< cells of each output
+};
 
 /// What places within a domain of this diagonal are multiples of, m.
 double quantum_of(double diagonal);

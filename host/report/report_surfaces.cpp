@@ -1,7 +1,10 @@
 #include "report_surfaces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "report_outlines.hpp"
 
@@ -36,41 +39,76 @@ void add_surfaces(Json& result, const observe::OutlineSnapshot& s, double quantu
   result["nodes"].push_back(base64(bytes));
 }
 
+/// The triangles of each cell's type, and which type a cell has.
+class Meshes {
+ public:
+  void add(const observe::OutlineSnapshot& s) {
+    auto triangle = s.triangles.begin();
+    for (std::size_t k = 0; k < s.cell.size(); ++k) {
+      std::vector<std::array<int, 3>> own;
+      for (; triangle != s.triangles.end() && (*triangle)[0] < s.first[k + 1]; ++triangle) {
+        own.push_back(*triangle);
+        for (int& corner : own.back()) corner = std::clamp(corner, s.first[k], s.first[k + 1] - 1) - s.first[k];
+      }
+      if (!of_cell_.contains(s.cell[k])) of_cell_[s.cell[k]] = number_.try_emplace(own, number_.size()).first->second;
+    }
+  }
+  void put_into(Json& result) const {
+    std::vector<std::string> meshes(number_.size());
+    for (const auto& [triangles, number] : number_) {
+      std::vector<unsigned char> bytes;
+      for (const auto& corners : triangles) {
+        for (const int node : corners) append_number(bytes, node);
+      }
+      meshes[number] = base64(bytes);
+    }
+    result["meshes"] = meshes;
+    Json& mesh = result["mesh"] = Json::array();
+    for (const auto& [cell, number] : of_cell_) mesh.push_back(number);
+  }
+
+ private:
+  std::map<std::vector<std::array<int, 3>>, std::size_t> number_;
+  std::map<int, std::size_t> of_cell_;
+};
+
 }  // namespace
 
 Json surface_data(const files::FrameReader& reader, const std::vector<std::size_t>& selection) {
-  if (selection.empty()) return nullptr;
-  const observe::OutlineSnapshot begin = reader.surfaces(static_cast<int>(selection.front()));
-  if (begin.triangles.empty()) return nullptr;
+  std::size_t nodes = 0, fullest = 0;
+  for (const std::size_t output : selection) {
+    const std::size_t here = reader.nodes(static_cast<int>(output));
+    if (here > nodes) nodes = here, fullest = output;
+  }
+  if (nodes == 0 || reader.surfaces(static_cast<int>(fullest)).triangles.empty()) return nullptr;
   const std::array<double, 3> size = reader.size_in_space();
   const double quantum = quantum_of(std::hypot(size[0], size[1], size[2]));
-  std::vector<unsigned char> triangles;
-  for (const auto& corners : begin.triangles) {
-    for (const int node : corners) append_number(triangles, node);
-  }
   Json result{{"size_um", {size[0] * micro, size[1] * micro, size[2] * micro}},
               {"periodic", {reader.periodic_x(), reader.periodic_y(), reader.periodic_z()}},
               {"quantum_um", quantum * micro},
-              {"first", begin.first},
-              {"triangles", base64(triangles)},
               {"outputs", Json::array()},
               {"origin_um", Json::array()},
               {"nodes", Json::array()}};
   const double scale = tension_scale([&](int output) { return reader.surfaces(output); }, selection);
   result["tension"] = {{"scale_N_per_m", scale}, {"values", Json::array()}};
   const std::size_t kept =
-      std::clamp<std::size_t>(most_surface_points / begin.x.size(), 2, std::max<std::size_t>(2, selection.size()));
+      std::clamp<std::size_t>(most_surface_points / nodes, 2, std::max<std::size_t>(2, selection.size()));
+  CellLayout layout;
+  Meshes meshes;
   std::size_t last = selection.size();  // none yet
   for (std::size_t k = 0; k < kept; ++k) {
     const std::size_t place = k * (selection.size() - 1) / (kept - 1);
     if (place == last) continue;
     last = place;
     const observe::OutlineSnapshot surfaces = reader.surfaces(static_cast<int>(selection[place]));
-    if (surfaces.first != begin.first) return nullptr;
+    if (!layout.add(surfaces)) return nullptr;
+    meshes.add(surfaces);
     result["outputs"].push_back(place);
     add_surfaces(result, surfaces, quantum);
     result["tension"]["values"].push_back(tension_bytes(surfaces, 1, scale));
   }
+  layout.put_into(result);
+  meshes.put_into(result);
   return result;
 }
 

@@ -81,10 +81,6 @@ auto Engine<D>::restore_cells(const std::shared_ptr<const files::CheckpointReade
   const scene::Scene& scene = *plan_.scene;
   // Room for them; who has an array of cells that are there already keeps it.
   if (cells_.cells.empty()) cells_ = plan::make_known_cells<D>(scene, [](int) { return false; });
-  // Which node of a surface tells its tank treading follows from how it was placed, and from nothing else.
-  if constexpr (D == 3)
-    plan::for_each_cell<D>(scene, scene::lattice_spacing(scene),
-                           [&](std::size_t, const Cells& cell) { state.observer.begin_with(cell); });
   std::optional<Start> start;
   TakePart<D> take_part;
   if (ranks_.several() && plan_.has_cells) {

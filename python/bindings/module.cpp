@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <utility>
 
 #include "base/faults.hpp"
 #include "base/foreign_call.hpp"
@@ -236,10 +237,12 @@ PYBIND11_MODULE(_core, module) {
       .def("cell_nodes",
            [](Session& session) {
              const core::CellNodes& nodes = session.simulation().nodes();
-             std::vector<long> first;
-             for (const core::CellRange& cell : nodes.cells) first.push_back(cell.first);
-             first.push_back(nodes.node_count());
-             return first;
+             std::vector<std::pair<long, long>> ranges;
+             for (int c = 0; c < nodes.cell_count(); ++c) {
+               const core::CellRange& cell = nodes.cells[c];
+               ranges.emplace_back(cell.first, nodes.knows(c) ? cell.end() : cell.first);
+             }
+             return ranges;
            })
       .def("set_force",
            [](Session& session, const py::object& callback) {

@@ -84,7 +84,7 @@ def _integral(x: Sequence[float], y: Sequence[float], begin: float, end: float) 
 class Cell:
     """The membrane of a cell at an instant: an outline, or in three dimensions a surface."""
 
-    number: int  #: in the scene's order, from 0
+    number: int  #: in the scene, from 0; no other cell gets it, also where cells come and leave
     aggregate: int  #: label of its aggregate: the smallest number of its cells
     outline: Floats  #: [nodes, 2]: x and y in m, one node after another, not wrapped into the periodic box; [nodes, 3] of a surface
     tension: Floats  #: [nodes]: N/m, of the segment from a node to the next one; of a surface the mean of the triangles around it
@@ -152,7 +152,7 @@ class Frame:
     strain: float  #: summed over the stages
     stage: str  #: name of the stage
     size_m: tuple[float, float]  #: of the box along x and y, m
-    cells: list[Cell]  #: in the scene's order
+    cells: list[Cell]  #: those that are there, by their numbers
     fields: dict[str, Field]  #: by name: velocity, density, viscosity, vorticity; empty where none were due
     walls: Sequence[Floats] = ()  #: polygons [n, 2] in m around walls that are no planes, which lie at their left; in three dimensions around those that the plane across z through the middle cuts
 
@@ -186,7 +186,7 @@ class Outputs:
 
     @property
     def cells(self) -> pandas.DataFrame:
-        """cells.csv: one row for each output time and cell, in SI units as its columns say, and beside them `stage_name`.
+        """cells.csv: one row for each output time and cell that is there, in SI units as its columns say, and beside them `stage_name`.
         A stage at rest has many times of one strain: `pivot` makes a table over the strain."""
         return self._rows("cells")
 
@@ -202,7 +202,7 @@ class Outputs:
 
     def pivot(self, column: str, over: str = "strain") -> pandas.DataFrame:
         """A column of cells.csv with a row for each value of `over` ("strain", "time_s" or "step") and a column for each
-        cell. Of several outputs with one strain (a stage at rest) the last stands for all."""
+        cell, nan where that was not there. Of several outputs with one strain (a stage at rest) the last stands for all."""
         cells = _with_columns(self.cells, "cells.csv", column, over)
         return cells.drop_duplicates([over, "cell"], keep="last").pivot(index=over, columns="cell", values=column)
 
@@ -327,8 +327,8 @@ class Run(Outputs):
         empty = last.mean("cell_free_layer_empty").value if "cell_free_layer_empty" in series else math.nan
         rows: dict[str, tuple[float, float, str]] = {}
         cells = self.cells
-        if len(cells):
-            end = cells[cells["step"] == cells["step"].max()]
+        end = cells[cells["step"] == series["step"].max()]
+        if len(end):
             rows["deformation"] = (float(end["deformation"].mean()), math.nan, "at the end; no error bar")
             if attracting:
                 rows["aggregates"] = (float(end["aggregate"].nunique()), math.nan, "at the end; no error bar")

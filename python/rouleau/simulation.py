@@ -154,10 +154,9 @@ class Simulation:
 
     @property
     def cell_nodes(self) -> list[slice]:
-        """Which nodes each cell has: `sim.positions[sim.cell_nodes[0]]` is the first cell's outline,
-        or its surface."""
-        first = self._core.cell_nodes()
-        return [slice(begin, end) for begin, end in zip(first[:-1], first[1:])]
+        """Which nodes each cell has, by its number: `sim.positions[sim.cell_nodes[0]]` is the first cell's outline,
+        or its surface. A cell that has not come in yet, or has left, has none; what stands at other nodes means nothing."""
+        return [slice(begin, end) for begin, end in self._core.cell_nodes()]
 
     def velocity(self) -> FluidField:
         """Velocity of the fluid, m/s: a copy. Needs the forces of the next step."""
@@ -173,7 +172,7 @@ class Simulation:
         return FluidField(fields[name], places[0], places[1], unit, *places[2:])
 
     def cells(self) -> pandas.DataFrame:
-        """One row for each cell, with the columns of cells.csv: deformation, area_m2, min_gap_m, ..."""
+        """One row for each cell that is there, with the columns of cells.csv: deformation, area_m2, min_gap_m, ..."""
         import pandas
 
         return pandas.DataFrame(self._core.cells())

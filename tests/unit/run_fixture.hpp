@@ -1,10 +1,12 @@
 // What the tests of a run's output share: a small scene and snapshots of it.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,6 +68,8 @@ inline MembraneSnapshot given(const OutlineSnapshot& outlines) {
   for (std::size_t i = 0; i < outlines.x.size(); ++i) points.insert(points.end(), {outlines.x[i], outlines.y[i]});
   MembraneSnapshot membranes;
   membranes.first = outlines.first;
+  membranes.cell.resize(outlines.first.size() - 1);
+  std::iota(membranes.cell.begin(), membranes.cell.end(), 0);
   membranes.fields = {given_field("points", "m", 2, points), given_field("tension", "N/m", 1, outlines.tension)};
   return membranes;
 }
@@ -103,6 +107,47 @@ inline Snapshot small_snapshot(long step, bool with_fields = false, int second_n
   }
   return snapshot;
 }
+
+/// A scene whose cells may come and leave.
+inline Scene open_scene() {
+  Scene scene = small_scene("cells that come and leave");
+  scene.domain.openings.emplace();
+  scene.domain.periodic[0] = false;
+  scene.cells.resize(5);
+  return scene;
+}
+
+/// Round cells of 32 nodes, no two of them alike, each alone but 2 and 3, which are together. They move a micrometre a
+/// step.
+inline Snapshot snapshot_of(long step, const std::vector<int>& cells) {
+  Snapshot snapshot = small_snapshot(step);
+  snapshot.cells.clear(), snapshot.contacts.clear();
+  OutlineSnapshot outlines;
+  outlines.first = {0};
+  for (const int cell : cells) {
+    CellSnapshot state{};
+    state.cell = state.aggregate = cell;
+    if (cell == 3 && std::find(cells.begin(), cells.end(), 2) != cells.end()) state.aggregate = 2;
+    state.type = "type " + std::to_string(cell % 2);
+    state.x = (2 + 3 * cell + static_cast<double>(step)) * 1e-6, state.y = 5e-6;
+    state.deformation = 0.1 * cell;
+    for (int i = 0; i < 32; ++i) {
+      const double angle = 2 * std::numbers::pi * i / 32;
+      outlines.x.push_back(state.x + 1e-6 * std::cos(angle));
+      outlines.y.push_back(state.y + (1 + 0.1 * cell) * 1e-6 * std::sin(angle));
+      outlines.tension.push_back(1e-6 * (cell + 1));
+    }
+    outlines.first.push_back(static_cast<int>(outlines.x.size()));
+    snapshot.cells.push_back(state);
+  }
+  snapshot.membranes = given(outlines);
+  snapshot.membranes.cell = cells;
+  snapshot.cells_inside = static_cast<long>(cells.size());
+  return snapshot;
+}
+
+/// Which cells there are at each output of a run in which they come and leave.
+inline const std::vector<std::vector<int>> cells_of_open_run{{0, 1}, {0, 2}, {2}, {}, {3}, {2, 3, 4}};
 
 inline Summary small_summary() {
   Summary summary;

@@ -41,7 +41,7 @@ class Animation {
   }
   description() {
     const {data} = this, cells = data.outlines ? data.outlines.first.length - 1 : 0;
-    return `Animation: ${cells ? `outlines of ${cells} ${cells === 1 ? "cell" : "cells"}` : "the flow"} in a box of ${format(this.lx, 3)} by ${format(this.ly, 3)} µm. Space plays, arrow keys step, plus and minus or two fingers zoom.`;
+    return `Animation: ${cells ? `outlines of ${cells} ${cells === 1 ? "cell" : "cells"}${hasTraffic(data) ? ", which come and leave" : ""}` : "the flow"} in a box of ${format(this.lx, 3)} by ${format(this.ly, 3)} µm. Space plays, arrow keys step, plus and minus or two fingers zoom.`;
   }
   showBars() { this.cellBar.replaceChildren(...(this.colours[this.view.colour] ?? this.colours.grey)?.bar() ?? []); }
 
@@ -137,7 +137,7 @@ class Animation {
     const size = cells ? cells.aggregate[output].filter(label => label === cells.aggregate[output][cell]).length : 1;
     const rows = [attracts(this.data) ? ["aggregate", cells && (size > 1 ? `of ${size} cells` : "none")] : ["group of close cells", cells && size > 1 ? `${size} cells` : null], ["gap", value("min_gap_um", " µm")], ["gap to a wall", value("wall_gap_um", " µm")], ["deformation", value("deformation", "")],
       ["angle", value("angle_deg", "°")], ["speed", value("speed_um_per_s", " µm/s")]].filter(([, text]) => text);
-    this.tip.replaceChildren(element("p", {class: "name"}, element("b", {}, `cell ${cell}`), cells ? `, ${cells.types[cell]}` : ""),
+    this.tip.replaceChildren(element("p", {class: "name"}, element("b", {}, `cell ${cellNumber(this.data, cell)}`), cells ? `, ${cells.types[cell]}` : ""),
       element("dl", {}, ...rows.flatMap(([name, text]) => [element("dt", {}, name), element("dd", {}, text)])));
     placeTip(this.tip, this.canvas, ...at);
   }
@@ -159,7 +159,7 @@ class Animation {
   paint(context) {
     const {lx, ly, width, height, view} = this, nodes = this.outlines && this.nodes(), scale = this.scale = this.whole * this.zoom;
     context.clearRect(0, 0, width, height);
-    const followed = view.follow && view.cell !== null && nodes ? this.centreOf(nodes, view.cell) : null;
+    const followed = view.follow && view.cell !== null && nodes && this.outlines.has(nodes, view.cell) ? this.centreOf(nodes, view.cell) : null;
     this.middle = followed && this.walls && this.zoom === 1 ? [followed[0], ly / 2] : followed ?? this.centre;
     const [cx, cy] = this.middle, half = [width / scale / 2, height / scale / 2];
     // One period at most, and what of it the canvas shows.
@@ -211,9 +211,10 @@ class Animation {
   paintCells(context, nodes, scale, under, acrossX, acrossY) {
     const {outlines, colours, view, between} = this, {first} = outlines, colour = colours[view.colour] ?? colours.grey, tensions = colour.tension && outlines.tension(between);
     for (let cell = 0; cell < outlines.count; ++cell) {
+      if (!outlines.has(nodes, cell)) continue;
       let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
       for (let i = first[cell]; i < first[cell + 1]; ++i) { left = Math.min(left, nodes[2 * i]); right = Math.max(right, nodes[2 * i]); low = Math.min(low, nodes[2 * i + 1]); high = Math.max(high, nodes[2 * i + 1]); }
-      const tone = colour.colour ? colour.colour(cell, between) : css(colour.tone(cell, between)), bad = this.failed() && this.data.summary.failure.cell === cell, chosen = view.cell === cell;
+      const tone = colour.colour ? colour.colour(cell, between) : css(colour.tone(cell, between)), bad = this.failed() && this.data.summary.failure.cell === cellNumber(this.data, cell), chosen = view.cell === cell;
       for (const dx of acrossX(left, right)) for (const dy of acrossY(low, high)) {
         context.beginPath();
         for (let i = first[cell]; i < first[cell + 1]; ++i) context.lineTo((nodes[2 * i] + dx) * scale, (nodes[2 * i + 1] + dy) * scale);

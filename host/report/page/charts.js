@@ -239,12 +239,12 @@ class Chart {
     this.timeline.seekPlace(this.u.posToVal(event.clientX - this.u.over.getBoundingClientRect().left, "x"));
   }
   /// Shows the line of a cell beside the others, or lifts it out of them.
-  pick(cell, valuesOf) {
+  pick(cell, valuesOf, number = cell) {
     const own = this.lines.findIndex(line => line.picked), of = this.lines.findIndex(line => line.cell === cell);
     if (own >= 0) {
       const line = this.lines[own];
       line.values = cell === null ? line.values.map(() => null) : valuesOf(cell);
-      line.label = cell === null ? "" : `cell ${cell}`;
+      line.label = cell === null ? "" : `cell ${number}`;
       this.keys[own].name.textContent = line.label; this.keys[own].button.hidden = cell === null;
       this.u.setData(this.table());
     }

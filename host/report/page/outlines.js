@@ -1,19 +1,50 @@
 // --------------------------------------------------------------------------------------------------- outlines and their colours
 const bytesOf = text => Uint8Array.from(atob(text), c => c.charCodeAt(0));
 
+/// Numbers of all nodes of a run, so many each: values(place among the cells that are there, axis, index among the numbers
+/// that are written) of an output; NaN of cells that are not there.
+function spreadOut({data, first, count}, output, axes, values) {
+  const all = new Float32Array(axes * first[count]).fill(NaN), there = data.there[output] ?? Array.from({length: count}, (_, cell) => cell);
+  let written = 0;
+  there.forEach((cell, place) => { for (let i = axes * first[cell]; i < axes * first[cell + 1]; ++i) all[i] = values(place, i % axes, written++); });
+  return all;
+}
+
 /// Nodes of an output in micrometres, so many coordinates each.
-function decodedNodes({data, first, count}, output, axes) {
-  const view = new DataView(bytesOf(data.nodes[output]).buffer), origins = data.origin_um[output], nodes = new Float32Array(view.byteLength / 2);
-  for (let cell = 0; cell < count; ++cell)
-    for (let i = axes * first[cell]; i < axes * first[cell + 1]; ++i) nodes[i] = origins[axes * cell + i % axes] + view.getInt16(2 * i, true) * data.quantum_um;
-  return nodes;
+function decodedNodes(cells, output, axes) {
+  const {nodes, origin_um, quantum_um: quantum} = cells.data, view = new DataView(bytesOf(nodes[output]).buffer), origins = origin_um[output];
+  return spreadOut(cells, output, axes, (place, axis, i) => origins[axes * place + axis] + view.getInt16(2 * i, true) * quantum);
 }
 
 /// Tension over its scale, from -1 to 1, for each node, between outputs a and b.
-function decodedTension(values, a, b, share) {
-  const [from, to] = [a, b].map(output => new Int8Array(bytesOf(values[output]).buffer));
-  return Float32Array.from(from, (v, i) => (v + share * (to[i] - v)) / 127);
+function decodedTension(cells, a, b, share) {
+  const [from, to] = [a, b].map(output => {
+    const values = new Int8Array(bytesOf(cells.data.tension.values[output]).buffer);
+    return spreadOut(cells, output, 1, (place, axis, i) => values[i] / 127);
+  });
+  return mixed(from, to, share);
 }
+
+/// Between two outputs. What only one of them has is there, as it is, in the half that belongs to that one.
+const mixed = (from, to, share) => from.map((v, i) => {
+  const w = to[i];
+  return Number.isNaN(v) || Number.isNaN(w) ? (share < .5 ? v : w) : v + share * (w - v);
+});
+
+/// The lines of all cells as long as the run's outputs, null where a cell is not there.
+function fillLines(run) {
+  const {cells} = run, all = run.step.length, empty = length => Array(length).fill(null);
+  if (!cells?.from) return;
+  for (const [name, lines] of Object.entries(cells)) {
+    if (["ids", "types", "from"].includes(name)) continue;
+    const filled = (line, from, length) => [...empty(from), ...line, ...empty(length - from - line.length)];
+    cells[name] = lines.map((line, i) => name === "aggregate" ? filled(line, 0, cells.ids.length) : filled(line, cells.from[i], all));
+  }
+}
+/// The number that a cell of a page has in the scene.
+const cellNumber = (run, cell) => run.cells?.ids?.[cell] ?? cell;
+/// Whether cells come or leave.
+const hasTraffic = run => Boolean(run.cells?.from);
 
 /// Outlines of one run: nodes x, y in micrometres, not wrapped into the box, at an output or between two.
 class Outlines {
@@ -24,15 +55,13 @@ class Outlines {
     return this.known[output] ??= decodedNodes(this, output, 2);
   }
   between({a, b, share}) {
-    const from = this.at(a);
-    if (!share) return from;
-    const to = this.at(b);
-    return from.map((v, i) => v + share * (to[i] - v));
+    return share ? mixed(this.at(a), this.at(b), share) : this.at(a);
   }
-  /// Tension over its scale, from -1 to 1, for each node; null in pages of earlier versions and of sections.
+  /// Whether a cell is among these nodes.
+  has(nodes, cell) { return !Number.isNaN(nodes[2 * this.first[cell]]); }
+  /// Tension over its scale, from -1 to 1, for each node; null where there is none.
   tension({a, b, share}) {
-    const {values, scale_N_per_m: scale} = this.data.tension ?? {};
-    return scale ? decodedTension(values, a, b, share) : null;
+    return this.data.tension?.scale_N_per_m ? decodedTension(this, a, b, share) : null;
   }
 }
 
@@ -54,7 +83,7 @@ function aggregateTones(aggregates) {
   let before = new Map();
   return aggregates.map(labels => {
     const sizes = new Map();
-    for (const label of labels) sizes.set(label, (sizes.get(label) ?? 0) + 1);
+    for (const label of labels) if (label !== null) sizes.set(label, (sizes.get(label) ?? 0) + 1);
     const now = new Map(), big = [...sizes.keys()].filter(label => sizes.get(label) > 1);
     for (const label of big) if (before.has(label)) now.set(label, before.get(label));
     for (const label of big) if (!now.has(label)) { let tone = 0; while ([...now.values()].includes(tone) && tone < lineTones.length - 1) ++tone; now.set(label, tone); }
@@ -70,7 +99,7 @@ function cellColours(run) {
   const {cells} = run, colours = {}, tonesOf = cells && aggregateTones(cells.aggregate);
   if (!run.outlines) return colours;
   if (cells && cells.types.length > 1) {
-    colours.cell = {title: "cell", tone: cell => lineTones[cell % lineTones.length], bar: () => []};
+    colours.cell = {title: "cell", tone: cell => lineTones[cellNumber(run, cell) % lineTones.length], bar: () => []};
   }
   if (cells && cells.types.length > 1 && attracts(run)) {
     colours.aggregate = {title: "aggregate", tone: (cell, {a, b, share}) => tonesOf[share < .5 ? a : b][cell],
@@ -81,7 +110,7 @@ function cellColours(run) {
     colours.type = {title: "cell type", tone: cell => lineTones[types.indexOf(cells.types[cell]) % lineTones.length],
       bar: () => types.map((type, i) => element("span", {}, element("i", {class: "dot", style: `background:var(${lineTones[i % lineTones.length]})`}), type))};
     const ranged = (name, title, unit, low, high) => ({title, colour: (cell, {a, b, share}) => {
-      const from = cells[name][cell][a], to = cells[name][cell][b];
+      const [at, then] = [a, b].map(output => cells[name][cell][output]), from = at ?? then, to = then ?? at;
       return from === null || to === null ? "#888" : rampColour(rampStops.cividis, ((from + share * (to - from)) - low) / (high - low || 1));
     }, bar: () => rampBar(`${spelled(title)}${unit}`, rampStops.cividis, [format(low, 3), format((low + high) / 2, 3), `≥ ${format(high, 3)}`])});
     const deformation = cells.deformation?.flat() ?? [], speeds = cells.speed_um_per_s?.flat() ?? [];

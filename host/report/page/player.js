@@ -50,7 +50,7 @@ function animationControls(timeline, animations, view, strip = []) {
 /// Which cell is chosen, and whether the view goes with it.
 function followControl(animations, view) {
   const most = Math.max(...animations.map(a => a.outlines?.count ?? 0)), box = element("input", {type: "checkbox", onchange: () => { view.follow = box.checked; if (view.follow && view.cell === null) view.cell = 0; view.changed(); }});
-  const select = choice("Cell", [["", "none"], ...Array.from({length: most}, (_, i) => [String(i), String(i)])], "", value => { view.cell = value === "" ? null : Number(value); view.follow &&= view.cell !== null; view.changed(); });
+  const select = choice("Cell", [["", "none"], ...Array.from({length: most}, (_, i) => [String(i), String(cellNumber(animations[0].data, i))])], "", value => { view.cell = value === "" ? null : Number(value); view.follow &&= view.cell !== null; view.changed(); });
   view.listeners.push(() => { box.checked = view.follow; select.querySelector("select").value = view.cell === null ? "" : String(view.cell); });
   return element("span", {class: "group"}, select, element("label", {}, box, "Follow"));
 }

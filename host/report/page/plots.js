@@ -9,6 +9,7 @@ const looks = {
   "Smallest gap to another cell": {zero: true, needsCells: 2, group: "main"},
   "Deformation (L − B)/(L + B)": {group: "main"},
   "Relative viscosity": {group: "main"},
+  "Cells": {steps: true, zero: true, optional: true, group: "main"},
   "Cell-free layer": {zero: true, needsCells: 1, optional: true, group: "main"},
   "Angle of the long axis": {group: "main"},
   "Smallest gap to a wall": {zero: true, optional: true},
@@ -58,7 +59,7 @@ function linesOf(quantity, runs) {
           ...(single || runs.length > 2 ? [] : [{label: `${prefix}middle 80 %`, values: high, band: low, run: r, tone}]),
           ...(several ? [] : [{label: "", values: median.map(() => null), run: r, tone: "--c1", picked: true}])];
       }
-      return cells.map((values, i) => ({values, run: r, tone: lineTones[i], label: `cell ${i}`, cell: i}));
+      return cells.map((values, i) => ({values, run: r, tone: lineTones[i], label: `cell ${cellNumber(run, i)}`, cell: i}));
     }
     const there = quantity.lines.filter(({name}) => run.series[name]);
     return there.map(({name, label}, i) => ({values: run.series[name], run: r, dashed, label: (prefix + label).trim(), tone: several && there.length === 1 ? runTones[r] : lineTones[i % lineTones.length]}));
@@ -89,7 +90,7 @@ function plots(timeline, parent, {view, events = []}) {
     const about = quantity.lines.map(({label, doc}) => `${label ? `${label}: ` : ""}${doc.replaceAll("`", "")}`).join("\n");
     const group = quantity.group === "main" && grid("main").children.length >= open ? "more" : quantity.group ?? "more";
     const chart = new Chart(grid(group), timeline, {...quantity, about, unit, lines, events}), name = quantity.lines[0].name;
-    if (quantity.table === "cells" && timeline.runs.length === 1) view?.listeners.push(() => chart.pick(view.lifted, cell => multiplied(timeline.runs[0].cells[name][cell], factor)));
+    if (quantity.table === "cells" && timeline.runs.length === 1) view?.listeners.push(() => chart.pick(view.lifted, cell => multiplied(timeline.runs[0].cells[name][cell], factor), cellNumber(timeline.runs[0], view.lifted)));
   }
   parent.append(...(grids.main ? [grids.main] : []));
   for (const [name, title] of [["more", "More charts"], ["numerics", "Numerics: Mach number, drifts, energy of the simulated fluid"]])

@@ -34,7 +34,8 @@ function aggregation(run) {
   if (cells < 2 || !history.length) return {sentences, numbers};
   const largest = h => Math.max(...h.members.map(m => m.length)), began = history[0], last = history.at(-1), number = (value, label, h, about) => numbers.push({value, label, about, position: at(h)});
   const most = history.reduce((best, h) => largest(h) > largest(best) || (largest(h) === largest(best) && h.count < best.count) ? h : best), size = largest(most), when = h => whenOf(run, at(h));
-  if (size === 1) return {sentences: [`No two of the ${cells} cells joined.`], numbers: []};
+  if (size === 1) return {sentences: [hasTraffic(run) ? "No two cells joined." : `No two of the ${cells} cells joined.`], numbers: []};
+  if (hasTraffic(run)) { number(when(most), `largest aggregate (${size} cells)`, most, "the first output at which there is none larger"); return {sentences: [`The largest aggregate had ${size} cells, at ${when(most)}.`], numbers}; }
   const all = size === cells, name = all ? `${cells === 2 ? "both" : `all ${cells}`} cells` : `${size} of ${cells} cells`;
   if (most === began) sentences.push(`${capital(name)} were together from the start`);
   else { sentences.push(`${capital(name)} joined at ${when(most)}`); number(when(most), all ? "all cells joined" : `largest aggregate (${size} cells)`, most, "the first output at which they are one aggregate"); }
@@ -58,6 +59,8 @@ function resultOf(run) {
     numbers.push({value, label: cells > 1 ? "mean deformation at the end" : "deformation at the end", about: "(L − B)/(L + B) of the ellipses with the cells' second moments"});
     if (cells === 1) sentences.push(`The cell's deformation is ${value} at the end.`);
   }
+  const [came, inside, left] = ["cells_in", "cells_inside", "cells_out"].map(name => run.series?.[name]?.at(-1));
+  if (typeof inside === "number") sentences.push(`${came} ${came === 1 ? "cell" : "cells"} came in, ${left} left, and ${inside} ${inside === 1 ? "is" : "are"} inside at the end.`);
   const angle = run.cells?.angle_deg?.[0]?.at(-1);
   if (cells === 1 && typeof angle === "number") numbers.push({value: `${withError(angle, (bars.angle_rad?.error ?? 0) * 180 / Math.PI)}°`, label: "angle of the long axis at the end", about: "against the flow, counter-clockwise"});
   const turns = (summary.rheology || []).at(-1)?.rotation?.[0];

@@ -3,7 +3,10 @@
 class Surfaces {
   constructor(surfaces) {
     Object.assign(this, {data: surfaces, first: surfaces.first, count: surfaces.first.length - 1, nodes: surfaces.first.at(-1), known: []});
-    this.triangles = decodedTriangles(surfaces.triangles);
+    const meshes = surfaces.meshes.map(decodedTriangles), length = surfaces.mesh.reduce((sum, mesh) => sum + meshes[mesh].length, 0);
+    this.triangles = new Uint32Array(length);
+    let end = 0;
+    surfaces.mesh.forEach((mesh, cell) => { for (const node of meshes[mesh]) this.triangles[end++] = surfaces.first[cell] + node; });
   }
   at(kept) {
     return this.known[kept] ??= decodedNodes(this, kept, 3);
@@ -15,19 +18,17 @@ class Surfaces {
     return {a: after - 1, b: after, share: (position - outputs[after - 1]) / (outputs[after] - outputs[after - 1])};
   }
   between(instant) {
-    const {a, b, share} = this.around(instant), from = this.at(a);
-    if (!share) return from;
-    const to = this.at(b);
-    return from.map((v, i) => v + share * (to[i] - v));
+    const {a, b, share} = this.around(instant);
+    return share ? mixed(this.at(a), this.at(b), share) : this.at(a);
   }
   /// Tension over its scale, from -1 to 1, for each node.
   tension(instant) {
     const {a, b, share} = this.around(instant);
-    return decodedTension(this.data.tension.values, a, b, share);
+    return decodedTension(this, a, b, share);
   }
-  /// Moved as whole cells into the periodic box.
+  /// Moved as whole cells into the periodic box. Triangles of cells that are not there have no area.
   wrapped(places, box, periodic) {
-    const moved = places.slice(), {first} = this;
+    const moved = places.map(v => Number.isNaN(v) ? 0 : v), {first} = this;
     for (let cell = 0; cell < this.count; ++cell) {
       for (let k = 0; k < 3; ++k) {
         if (!periodic[k]) continue;
@@ -74,6 +75,8 @@ class SpaceView {
   static uncut = [0, 0, 0, 1];
   constructor(parent, timeline, run, view) {
     const data = timeline.runs[run], surfaces = new Surfaces(data.surfaces);
+    const places = new Map((data.cells?.ids ?? []).map((number, place) => [number, place]));
+    this.places = data.surfaces.cells.map((number, cell) => places.get(number) ?? cell);  // among the cells of the page
     Object.assign(this, {timeline, run, data, view, surfaces, colours: cellColours(data), box: data.surfaces.size_um, periodic: data.surfaces.periodic, cut: {axis: null, share: .5}, ...SpaceView.start});
     this.canvas = element("canvas", {class: "view space", role: "img", tabindex: 0, "aria-label": `${surfaces.count} ${surfaces.count === 1 ? "cell" : "cells"} in a box of ${this.box.map(l => format(l, 3)).join(" by ")} µm, seen in perspective. Arrow keys turn it, plus and minus zoom.`});
     parent.append(this.canvas, this.cutControls());
@@ -132,13 +135,14 @@ class SpaceView {
     geometry.attributes.normal.data.set(normalsAt(places, surfaces.triangles));
     for (let i = 0; i < places.length; ++i) position.data[i] = places[i] - box[i % 3] / 2;
     const tension = colour?.tension && surfaces.tension(between);
-    for (let cell = 0; cell < surfaces.count; ++cell) {
+    for (let own = 0; own < surfaces.count; ++own) {
+      const cell = this.places[own];
       if (tension && this.view.cell !== cell) {
-        for (let i = surfaces.first[cell]; i < surfaces.first[cell + 1]; ++i) tones.data.set(rampRgb(rampStops.tension, (tension[i] + 1) / 2), 3 * i);
+        for (let i = surfaces.first[own]; i < surfaces.first[own + 1]; ++i) tones.data.set(rampRgb(rampStops.tension, (tension[i] + 1) / 2), 3 * i);
         continue;
       }
       const rgb = rgbOf(this.view.cell === cell ? css("--text") : colour?.colour ? colour.colour(cell, between) : css(colour ? colour.tone(cell, between) : "--single"));
-      for (let i = surfaces.first[cell]; i < surfaces.first[cell + 1]; ++i) tones.data.set(rgb, 3 * i);
+      for (let i = surfaces.first[own]; i < surfaces.first[own + 1]; ++i) tones.data.set(rgb, 3 * i);
     }
     for (const name of ["position", "normal", "colour"]) geometry.attributes[name].needsUpdate = true;
     const far = this.distance * 1.15 * Math.hypot(...box) / (2 * Math.tan(16 * Math.PI / 180)), {azimuth, elevation} = this;

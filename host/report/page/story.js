@@ -31,8 +31,10 @@ function eventsOf(run, most = 12) {
   const events = stagesOf(run).slice(1).map(stage => ({position: stage.from, kind: "stage", text: stage.name})), changes = [], history = lastingHistory(run);
   history.slice(1).forEach((now, i) => {
     const before = history[i], old = together(before.members), fresh = together(now.members), same = m => list => list.length === m.length && list.every(c => m.includes(c));
-    const made = fresh.filter(m => !old.some(same(m))), gone = old.filter(m => !fresh.some(same(m)));
-    const kind = now.count < before.count ? "join" : "break", position = outputAt(run, now.time_s);
+    // An aggregate that cells have left together with the domain has not broken.
+    const there = new Set(now.members.flat()), stays = m => m.every(c => there.has(c)), rest = old.filter(m => !stays(m)).map(m => m.filter(c => there.has(c)));
+    const made = fresh.filter(m => !old.some(same(m)) && !rest.some(same(m))), gone = old.filter(m => stays(m) && !fresh.some(same(m)));
+    const kind = gone.length && made.length ? (now.count - there.size < before.count - before.members.flat().length ? "join" : "break") : made.length ? "join" : "break", position = outputAt(run, now.time_s);
     if (position < 0 || !(made.length || gone.length)) return;
     const few = run.cells && run.cells.types.length <= 8, size = Math.max(...(kind === "join" ? made : gone).map(m => m.length));
     const text = kind === "join" ? few ? `${groupWords(made)} joined` : `${size} cells joined` : few ? `${groupWords(gone)} broke` : `${size} cells broke up`;

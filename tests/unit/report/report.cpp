@@ -229,6 +229,46 @@ TEST_CASE("a run that was killed after a checkpoint shows the frames of all its 
   CHECK(report_data(folder.path())["step"] == Json::array({0, 1}));
 }
 
+TEST_CASE("the report of a run whose cells come and leave has each while it is there") {
+  const ScratchFolder folder;
+  {
+    RunDirectory run(folder.path(), open_scene());
+    for (std::size_t output = 0; output < cells_of_open_run.size(); ++output)
+      run.write(snapshot_of(static_cast<long>(output), cells_of_open_run[output]));
+    run.finish(to_json(small_summary()));
+  }
+  const Json data = report_data(folder.path());
+  CHECK(data["step"] == Json::array({0, 1, 2, 3, 4, 5}));
+  CHECK(data["shown"]["damage"].empty());
+  CHECK(data["series"]["cells_inside"] == Json::array({2, 2, 1, 0, 1, 3}));
+  const Json& cells = data["cells"];
+  CHECK(cells["ids"] == Json::array({0, 1, 2, 3, 4}));
+  CHECK(cells["types"] == Json::array({"type 0", "type 1", "type 0", "type 1", "type 0"}));
+  CHECK(cells["from"] == Json::array({0, 0, 1, 4, 5}));
+  CHECK(cells["deformation"] ==
+        Json::array({{0, 0}, Json::array({0.1}), {0.2, 0.2, nullptr, nullptr, 0.2}, {0.3, 0.3}, Json::array({0.4})}));
+  CHECK(cells["aggregate"][0] == Json::array({0, 1}));
+  CHECK(cells["aggregate"][1] == Json::array({0, nullptr, 2}));
+  CHECK(cells["aggregate"][3] == Json::array());
+  CHECK(cells["aggregate"][5] == Json::array({nullptr, nullptr, 2, 2, 4}));
+  // They move 1 um in 0.1 s; a cell that is there once has no speed.
+  CHECK(cells["speed_um_per_s"][0] == Json::array({10, 10}));
+  CHECK(cells["speed_um_per_s"][4] == Json::array({nullptr}));
+  const Json& outlines = data["outlines"];
+  CHECK(outlines["cells"] == cells["ids"]);
+  CHECK(outlines["first"] == Json::array({0, 32, 64, 96, 128, 160}));
+  CHECK(outlines["there"] ==
+        Json::array({{0, 1}, {0, 2}, Json::array({2}), Json::array(), Json::array({3}), {2, 3, 4}}));
+  CHECK(outlines["nodes"][3] == "");
+  CHECK(outlines["origin_um"][1].size() == 4);
+  CHECK(outlines["origin_um"][1][2].get<double>() == Approx(2 + 6 + 1).margin(0.01));
+  // A run that goes on may lack the last rows of cells.csv: what is there whole is shown.
+  std::filesystem::remove(folder.path() / "summary.json");
+  std::filesystem::resize_file(folder.path() / "cells.csv",
+                               std::filesystem::file_size(folder.path() / "cells.csv") - 10);
+  CHECK(report_data(folder.path())["step"] == Json::array({0, 1, 2, 3, 4}));
+}
+
 TEST_CASE("a report without frames says why, and one without cells or outputs is still a report") {
   const ScratchFolder folder;
   finished_run(folder.path() / "a", "a");

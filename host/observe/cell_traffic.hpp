@@ -1,0 +1,79 @@
+// Cells that come in through the openings of a domain, and cells that leave.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "json/json.hpp"
+#include "observable.hpp"
+#include "snapshot.hpp"
+
+namespace rouleau::scene {
+struct Scene;
+}
+
+namespace rouleau::observe {
+
+/// Whether cells of a scene may come or leave: then series.csv has the columns of cells' traffic.
+bool has_traffic(const scene::Scene& scene);
+/// What a run of a scene has.
+RunKind kind_of(const scene::Scene& scene);
+
+/// Counts cells that come and leave, and how much volume they and all that flows carry through the ends of x, in m3, in
+/// two dimensions in m2. It follows the run on its first rank. Each cell comes and leaves once.
+class CellTraffic {
+ public:
+  static constexpr int no_opening = -1;
+
+  /// A stage begins, at a time of the run in s.
+  void begin_stage(const std::string& name, double time);
+  /// A cell of so much volume is there from now on. `end`: 0, through the lower end, or 1; `no_opening`: it was placed.
+  void came(int cell, double volume, double time, int end);
+  /// It leaves through an end. Throws std::out_of_range for a cell that is not there.
+  void left(int cell, double time, int end);
+  /// What flows along +x through both ends at this time, cells included, m3/s or m2/s; between two calls it changes
+  /// linearly.
+  void flowed(const std::array<double, 2>& along_x, double time);
+
+  [[nodiscard]] long in() const { return in_; }  ///< through openings, without those that were placed
+  [[nodiscard]] long inside() const { return static_cast<long>(inside_.size()); }
+  [[nodiscard]] long out() const { return out_; }
+  void tell(Snapshot& snapshot) const;
+  /// summary.json's "cell_traffic": {cells_in, cells_inside, cells_out, residence_time_s: {mean, least, most, cells} of
+  /// those that came in and left (null: none did), stages: [{stage, ends: [lower, upper]}]}, each end {volume_in,
+  /// volume_out (of cells), flow_in (all that came in less all that left), unit, discharge_hematocrit}: the net volume
+  /// of cells over that of all, null where nothing flowed. `unit`: of volumes, "m3" or "m2".
+  [[nodiscard]] nlohmann::json summary(const std::string& unit) const;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(CellTraffic, inside_, in_, out_, stayed_, residence_, stages_, flows_, last_flow_,
+                                 last_time_)
+
+ private:
+  struct StageTraffic;
+  StageTraffic& stage(double time);
+  struct Visit {
+    double since, volume;
+    bool placed;
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Visit, since, volume, placed)
+  };
+  struct Residence {
+    double sum = 0, least = 0, most = 0;  ///< s
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Residence, sum, least, most)
+  };
+  struct StageTraffic {
+    std::string name;
+    std::array<double, 2> in{}, out{}, flow{};  ///< by end: volume of cells, and of all into the domain
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(StageTraffic, name, in, out, flow)
+  };
+
+  std::map<int, Visit> inside_;
+  long in_ = 0, out_ = 0, stayed_ = 0;  ///< stayed: of those that left, the ones that had come in
+  Residence residence_;
+  std::vector<StageTraffic> stages_;
+  bool flows_ = false;  ///< what flows has been said in this stage
+  std::array<double, 2> last_flow_{};
+  double last_time_ = 0;
+};
+
+}  // namespace rouleau::observe
