@@ -5,6 +5,7 @@ import csv
 import json
 import math
 import os
+import pathlib
 import shutil
 import subprocess
 import tempfile
@@ -112,6 +113,56 @@ class A_frame(Case):
         self.assertEqual(RUN.frame(index=0).step, 0)
         self.assert_refused("strain 9 is outside of what the run has", RUN.frame, strain=9)
         self.assert_refused("wants one of", RUN.frame, strain=1, index=0)
+
+
+class Cells_that_come_and_leave(Case):
+    """A run's files as they are written where cells come and leave: 0 leaves, nothing is there, 2 has come."""
+
+    THERE = [[0, 1], [1, 2], [], [2]]
+
+    def setUp(self):
+        super().setUp()
+        import h5py
+        self.folder = pathlib.Path(self.path) / "open"
+        self.folder.mkdir()
+        rows = [(step, cell) for step, cells in enumerate(self.THERE) for cell in cells]
+        texts = {"scene.json": "{}", "summary.json": json.dumps({"status": "completed", "outcome": "completed", "rheology": []}),
+                 "cells.csv": "step,time_s,strain,cell,type,deformation,aggregate\n" + "".join(
+                     f"{step},{step / 10},0,{cell},rbc,{(1 + cell) / 10},{cell}\n" for step, cell in rows),
+                 "series.csv": "step,time_s,strain,stage_name,cells_inside\n" + "".join(
+                     f"{step},{step / 10},0,flow,{len(cells)}\n" for step, cells in enumerate(self.THERE))}
+        for name, text in texts.items():
+            (self.folder / name).write_text(text)
+        with h5py.File(self.folder / "frames.h5", "w") as file:
+            file.attrs.update(size_m=[2e-5, 1e-5], nodes=[8.0, 4.0])
+            for step, cells in enumerate(self.THERE):
+                frame = file.create_group(f"frames/{step:06}")
+                frame.attrs.update(step=step, time_s=step / 10, strain=0.0, stage=0, stage_name="flow")
+                if not cells:
+                    continue
+                of_node = numpy.repeat(cells, 3)
+                frame["membranes/points"] = numpy.stack([1e-6 * of_node, numpy.arange(len(of_node)) * 1e-6], axis=1)
+                frame["membranes/tension"] = 1e-6 * of_node
+                frame["membranes/first"] = numpy.arange(len(cells) + 1) * 3
+                frame["membranes/cell"] = frame["membranes/aggregate"] = of_node
+
+    def test_have_their_numbers_in_every_frame(self):
+        run = rouleau.open(self.folder)
+        for step, cells in enumerate(self.THERE):
+            frame = run.frame(index=step)
+            self.assertEqual([cell.number for cell in frame.cells], cells)
+            for cell in frame.cells:
+                self.assertEqual(list(cell.outline[:, 0]), [1e-6 * cell.number] * 3)
+            frame.plot()
+
+    def test_have_a_column_each_in_which_what_was_not_there_is_nan(self):
+        run = rouleau.open(self.folder)
+        table = run.pivot("deformation", over="step")
+        self.assertEqual(list(table.columns), [0, 1, 2])
+        expected = [[0.1, 0.2, math.nan], [math.nan, 0.2, 0.3], [math.nan, math.nan, 0.3]]
+        numpy.testing.assert_array_equal(table.to_numpy(), expected)
+        self.assertEqual(run.results.loc["deformation", "value"], 0.3)
+        run.plot("deformation", over="time_s")
 
 
 class Fields_in_space(Case):
