@@ -92,7 +92,7 @@ std::vector<char> open_ones(const core::CellNodes& cells, const std::vector<doub
 
 std::vector<double> smallest_gaps(core::Surroundings<3>& around, const core::Domain<3>& domain) {
   const core::Surfaces& s = around.cells();
-  double most = std::numeric_limits<double>::infinity();
+  double most = domain.size[0] + domain.size[1] + domain.size[2];
   for (int k = 0; k < 3; ++k) {
     if (domain.periodic[k]) most = std::min(most, domain.period(k) / 2);
   }
@@ -120,8 +120,7 @@ std::vector<double> smallest_gaps(core::Surroundings<2>& around, const core::Dom
   double first = 1;  // about the size of a cell, and not much of the box
   for (const core::BoundingBox<2>& box : around.boxes())
     if (box.usable()) first = std::max({first, box.most[0] - box.least[0], box.most[1] - box.least[1]});
-  const double length = domain.size[0];
-  const double most = 2 * std::max(length, domain.period(1));
+  const double length = domain.size[0], most = 2 * std::max(length, domain.period(1));
   double reach = std::min(first, length / 16);
   for (std::vector<char> open = open_ones(m, gaps); reach < most && around.show(reach, open); reach *= 2) {
     const auto is_open = [&](int cell) { return open[cell] != 0; };

@@ -30,7 +30,7 @@ std::vector<CellContact> find_touching_cells(const core::Surfaces& surfaces, con
 /// Of each of this rank's cells the smallest gap to any other or to an image (spacings), looked for in growing
 /// neighbourhoods up to the size of the box; infinite when there is none. All ranks together.
 std::vector<double> smallest_gaps(core::Surroundings<2>& around, const core::Domain<2>& domain);
-/// The same of surfaces, up to half of the shortest period.
+/// The same of surfaces, up to half of the shortest period, if there is one.
 std::vector<double> smallest_gaps(core::Surroundings<3>& around, const core::Domain<3>& domain);
 
 struct Aggregates {

@@ -28,8 +28,9 @@ class Columns {
       : upper_wall_(height - 0.5),
         columns_(static_cast<std::size_t>(count), CellFreeLayer{height / 2.0, height / 2.0}) {}
 
-  /// A membrane between these heights.
+  /// A membrane between these heights; in no column (-1) where it is beyond an opening.
   void meet(int column, double y, double other) {
+    if (column < 0) return;
     narrow(columns_[static_cast<std::size_t>(column)], {std::min(y, other) + 0.5, upper_wall_ - std::max(y, other), 0});
   }
   template <int D>
@@ -133,7 +134,8 @@ CellFreeLayer cell_free_layer_in_tube(const core::Surfaces& surfaces, const core
   const auto narrow_gap = [](double& gap, double by) { gap = std::min(gap, by); };
   for_lines_across(surfaces, domain.size[0], [&](int x, const auto& p, const auto& q) {
     const double py = p[0] - axis_y, pz = p[1] - axis_z, dy = q[0] - p[0], dz = q[1] - p[1];
-    if (!(std::hypot(py, pz) < 1e9 && std::hypot(dy, dz) < 2 * radius)) return;
+    const int column = domain.wrapped(0, x);
+    if (!(column >= 0 && std::hypot(py, pz) < 1e9 && std::hypot(dy, dz) < 2 * radius)) return;
     // The shorter way around the axis from one end to the other; rays are numbered by their angle with z, so that the
     // upper half comes first.
     const double begin = std::atan2(py, pz);
@@ -146,7 +148,7 @@ CellFreeLayer cell_free_layer_in_tube(const core::Surfaces& surfaces, const core
       const double distance =
           across != 0 ? (pz * dy - py * dz) / across : std::max(std::hypot(py, pz), std::hypot(py + dy, pz + dz));
       const int number = ((ray % (2 * half)) + 2 * half) % (2 * half);
-      narrow_gap(gaps[static_cast<std::size_t>(number * domain.size[0] + domain.wrapped(0, x))], radius - distance);
+      narrow_gap(gaps[static_cast<std::size_t>(number * domain.size[0] + column)], radius - distance);
     });
   });
   core::join(ranks, gaps, narrow_gap);
@@ -164,8 +166,11 @@ template <int D>
 std::vector<WallPoint<D>> wall_points(const core::RegionPointer<D>& region, const core::Domain<D>& domain) {
   constexpr std::size_t most = 10'000;
   constexpr double step = 0.5;  // into the fluid
-  const core::RegionPointer<D> fluid = core::intersection<D>({region, core::between_walls<D>(domain)});
-  const core::Border<D> border = core::border_of_region(*fluid, domain);
+  core::Domain<D> without_ends = domain;
+  without_ends.periodic[0] = true;  // openings are no walls
+  const core::RegionPointer<D> fluid = core::intersection<D>({region, core::between_walls<D>(without_ends)}),
+                               closed = core::intersection<D>({fluid, core::between_walls<D>(domain)});
+  const core::Border<D> border = core::border_of_region(*closed, domain);
   double longest = 0;
   for (const int nodes : domain.size) longest += nodes;
   std::vector<WallPoint<D>> points;
@@ -173,6 +178,7 @@ std::vector<WallPoint<D>> wall_points(const core::RegionPointer<D>& region, cons
     const std::array<int, D>& facet = border.facets[i];
     WallPoint<D> point{core::Vec<D>::Zero(), core::size_of<D>(border, facet), step};
     for (const int corner : facet) point.place += border.corners[corner] / D;
+    if (fluid->distance(point.place).value > step) continue;  // in an opening
     const core::Vec<D> inward = -border.normal(facet).normalized();
     // Corners of facets are off the wall by less than half a step.
     const auto stays_nearest = [&](double far) {

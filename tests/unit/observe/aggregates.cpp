@@ -126,6 +126,24 @@ TEST_CASE(
   CHECK(gaps_of(circles({}), test::periodic_box(100)).empty());
 }
 
+TEST_CASE("between openings gaps are looked for along the whole length, and a lone cell has none") {
+  const Domain<2> open({120, 40}, {false, false});
+  const Membranes three = circles({{20, 20}, {100, 20}, {110, 31}}, 30);
+  const std::vector<double> gaps = gaps_of(three, open);
+  CHECK(gaps[0] == smallest_gap(three, 0, 1, open, 200));
+  CHECK(gaps[1] == smallest_gap(three, 1, 2, open, 200));
+  CHECK(std::isinf(gaps_of(circles({{20, 20}}), open).front()));
+  const Domain<3> in_space({60, 20, 20}, {false, false, false});
+  Surfaces s;
+  s.types.push_back(std::make_shared<const RestSurface>(core::rest_surface(core::ellipsoid(3, {2, 2, 2}))));
+  add_cell(s, 0, {10, 10, 10});
+  Surroundings<3> alone(s);
+  CHECK(std::isinf(smallest_gaps(alone, in_space).front()));
+  add_cell(s, 0, {50, 10, 10});
+  Surroundings<3> around(s);
+  for (const double gap : smallest_gaps(around, in_space)) CHECK(gap == Approx(36).margin(0.2));
+}
+
 namespace {
 
 /// Discs, spheres among them, at random places and turns; some touch or overlap.

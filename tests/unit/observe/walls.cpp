@@ -162,3 +162,24 @@ TEST_CASE("a cell on the axis carries more of the flow than its share of a chann
         Approx(1.5 * (1 - (11.9 * 11.9 + radius * radius / 4) / (half * half)) * tube).epsilon(1e-3));
   CHECK(discharge(11.9) < tube);
 }
+
+TEST_CASE("openings across a vessel are no walls: the layer beside a cell is that of a periodic vessel") {
+  const RegionPointer<2> channel = box_region<2>({-1e3, 8.3}, {1e3, 51.7});
+  CellFreeLayer found[2];
+  double length[2]{}, widest[2]{};
+  for (const bool periodic : {false, true}) {
+    const Domain<2> domain({80, 60}, {periodic, false});
+    const auto points = wall_points<2>(channel, domain);
+    for (const WallPoint<2>& point : points) {
+      length[periodic] += point.size;
+      widest[periodic] = std::max(widest[periodic], point.half_width);
+    }
+    found[periodic] = cell_free_layer_at(points, discs(12, {{40, 30}}), domain);
+  }
+  // A channel of straight walls, whose corners are cut by half a spacing at most.
+  CHECK(length[true] == Approx(160).margin(0.1));
+  CHECK(length[false] == Approx(160).margin(4));
+  CHECK(widest[false] == Approx(21.7).margin(0.5));
+  CHECK(widest[true] == Approx(21.7).margin(0.5));
+  CHECK(found[false].lower == Approx(found[true].lower).epsilon(0.02));
+}
