@@ -1,7 +1,8 @@
 // frames.h5: outlines of the cells that are there at every output time, fluid fields where due, in a form ParaView and
 // h5py open.
 //
-//   /                      attributes format, title, size_m [2], nodes [2], periodic_y; where output.fields has a
+//   /                      attributes format, title, size_m [2], nodes [2], periodic_y, between openings periodic_x,
+//                          which is 0; where output.fields has a
 //                          region or a stride: fields_first_m [2], fields_spacing_m [2]; each [3] in three
 //                          dimensions, with periodic_z; between openings periodic_x, 0
 //   /walls                 corners, first, segments; in three dimensions points, triangles: see WallBorder (walls.hpp)

@@ -124,7 +124,7 @@ class Vorticity {
     const core::Moments<D>* const row = axis == 0 ? own_ : step > 0 ? above_[k] : below_[k];
     const double own = own_[x].velocity[component];
     const double upper_or_lower = step > 0 ? walls_.upper : walls_.lower;
-    if (column < 0) return own;  // beyond an opening the flow goes on as it is
+    if (column < 0) return 2 * own - own_[x - step].velocity[component];  // beyond an opening it goes on
     if (row == nullptr) return 2 * (axis == 1 && component == 0 ? upper_or_lower : 0) - own;
     if (solid(x, axis, step)) return -own;
     return row[column].velocity[component];

@@ -99,12 +99,12 @@ Shown shown(const observe::Observable& observable) {
   return {observable.column(), std::string(observable.unit), 1};
 }
 
-/// What charts there are and which lines each has, in the order of the columns.
-Json charts() {
+/// What charts there are and which lines each has, in the order of the columns. `traffic`: cells may come or leave.
+Json charts(bool traffic) {
   Json list = Json::array();
   for (const char* table : {"cells", "series"}) {
     for (const observe::Observable& observable : observe::table(table).observables) {
-      if (observable.chart.empty()) continue;
+      if (observable.chart.empty() || (observable.of_traffic && !traffic)) continue;
       const Shown as = shown(observable);
       auto chart =
           std::find_if(list.begin(), list.end(), [&](const Json& c) { return c["title"] == observable.chart; });
@@ -228,7 +228,9 @@ void add_instants(const files::StoredTable& series, const std::vector<std::size_
 void add_frames(const files::FrameReader& reader, const std::filesystem::path& frames, const Selection& selection,
                 std::size_t stride, Json& data) {
   const auto size = reader.size();
-  data["domain"] = {{"size_um", {size[0] * micro, size[1] * micro}}, {"periodic_y", reader.periodic_y()}};
+  data["domain"] = {{"size_um", {size[0] * micro, size[1] * micro}},
+                    {"periodic_x", reader.periodic_x()},
+                    {"periodic_y", reader.periodic_y()}};
   Json outlines = stride > 0 ? outline_data(reader, selection, stride) : Json(), walls = wall_data(reader);
   data["fields"] = field_data(frames, selection);
   data["outlines"] = std::move(outlines), data["walls"] = std::move(walls);
@@ -323,7 +325,7 @@ Json report_data(const std::filesystem::path& directory) {
 
   data["shown"] = {{"outputs", selection.size()}, {"of", outputs}, {"node_stride", stride}};
   add_instants(series, selection, data);
-  data["charts"] = charts();
+  data["charts"] = charts(series.has("cells_inside"));
   data["series"] = series_data(series, selection);
   data["cells"] = count > 0 && outputs > 0 ? cell_data(*cells, *rows, outputs, selection) : Json(nullptr);
   data["outlines"] = data["fields"] = data["surfaces"] = data["walls"] = nullptr;

@@ -71,15 +71,16 @@ void move_nodes(Worker worker, CellNodes& cells) {
 
 template <int D>
 std::array<double, 3> mean_velocity(const CellNodes& cells, const Ranks<D>& ranks) {
-  std::vector<ExactSum> sums(D);
+  std::vector<ExactSum> sums(D + 1);  // and the number of nodes that are there
   for (const int c : cells.own_cells()) {
     const CellRange& cell = cells.cells[c];
+    sums[D].add(cell.count);
     for (std::size_t k = 0; k < D; ++k)
       sums[k].add(cells.velocity[k].data() + cell.first, static_cast<std::size_t>(cell.count));
   }
   add_up(ranks, sums);
   std::array<double, 3> mean{};
-  for (std::size_t k = 0; k < D; ++k) mean[k] = sums[k].value() / std::max(1, cells.node_count());
+  for (std::size_t k = 0; k < D; ++k) mean[k] = sums[k].value() / std::max(1.0, sums[D].value());
   return mean;
 }
 

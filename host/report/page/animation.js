@@ -28,6 +28,7 @@ class Animation {
     [this.lx, this.ly] = data.domain.size_um;
     this.centre = [this.lx / 2, this.ly / 2];
     this.walls = !data.domain.periodic_y;
+    this.open = !data.domain.periodic_x;  // between openings
     this.canvas = element("canvas", {class: "view", role: "img", tabindex: 0, "aria-label": this.description()});
     this.tip = element("div", {class: "tip", role: "status", hidden: ""});
     this.bar = element("div", {class: "bar"});
@@ -60,7 +61,7 @@ class Animation {
     const nodes = this.nodes(), {first, count} = this.outlines, [x, y] = this.toDomain(px, py);
     for (let cell = count - 1; cell >= 0; --cell) {
       const [cx, cy] = this.centreOf(nodes, cell), near = (v, middle, length) => v - length * Math.round((v - middle) / length);
-      const qx = near(x, cx, this.lx), qy = this.walls ? y : near(y, cy, this.ly);
+      const qx = this.open ? x : near(x, cx, this.lx), qy = this.walls ? y : near(y, cy, this.ly);
       let inside = false;
       for (let i = first[cell], j = first[cell + 1] - 1; i < first[cell + 1]; j = i++) {
         const [ax, ay, bx, by] = [nodes[2 * i], nodes[2 * i + 1], nodes[2 * j], nodes[2 * j + 1]];
@@ -163,13 +164,13 @@ class Animation {
     this.middle = followed && this.walls && this.zoom === 1 ? [followed[0], ly / 2] : followed ?? this.centre;
     const [cx, cy] = this.middle, half = [width / scale / 2, height / scale / 2];
     // One period at most, and what of it the canvas shows.
-    const clip = {left: Math.max(cx - lx / 2, cx - half[0]), right: Math.min(cx + lx / 2, cx + half[0]), bottom: this.walls ? 0 : Math.max(cy - ly / 2, cy - half[1]), top: this.walls ? ly : Math.min(cy + ly / 2, cy + half[1])};
+    const clip = {left: Math.max(this.open ? 0 : cx - lx / 2, cx - half[0]), right: Math.min(this.open ? lx : cx + lx / 2, cx + half[0]), bottom: this.walls ? 0 : Math.max(cy - ly / 2, cy - half[1]), top: this.walls ? ly : Math.min(cy + ly / 2, cy + half[1])};
     context.save();
     context.translate(width / 2 - cx * scale, height / 2 + cy * scale); context.scale(1, -1);  // y upwards
     context.save();
     context.beginPath(); context.rect(clip.left * scale, clip.bottom * scale, (clip.right - clip.left) * scale, (clip.top - clip.bottom) * scale); context.clip();
     const images = (low, high, length, from, to) => { const list = []; for (let k = Math.ceil((from - high) / length); k <= Math.floor((to - low) / length); ++k) list.push(k * length); return list; };
-    const acrossX = (low, high) => images(low, high, lx, clip.left, clip.right), acrossY = (low, high) => this.walls ? [0] : images(low, high, ly, clip.bottom, clip.top);
+    const acrossX = (low, high) => this.open ? [0] : images(low, high, lx, clip.left, clip.right), acrossY = (low, high) => this.walls ? [0] : images(low, high, ly, clip.bottom, clip.top);
     const flow = this.fields?.between(this.between) ?? null, under = this.paintField(context, flow, scale, acrossX, acrossY);
     if (flow && view.tracers && this.fields.moves) this.paintTracers(context, flow, scale, acrossX);
     if (this.data.walls) this.paintSolid(context, scale, acrossX, acrossY);

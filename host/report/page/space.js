@@ -131,11 +131,12 @@ class SpaceView {
     if (!width || !this.renderer) return;
     const height = Math.round(Math.min(width * .76, 520)), between = this.timeline.between(this.run), colour = this.colours[this.view.colour] ?? this.colours.grey;
     if (this.width !== width) { this.renderer.setSize(width, height); canvas.style.width = "100%"; this.camera.perspective({aspect: width / height}); this.width = width; }
-    const places = surfaces.wrapped(surfaces.between(between), box, this.periodic), position = geometry.attributes.position, tones = geometry.attributes.colour;
+    const nodes = surfaces.between(between), places = surfaces.wrapped(nodes, box, this.periodic), position = geometry.attributes.position, tones = geometry.attributes.colour;
     geometry.attributes.normal.data.set(normalsAt(places, surfaces.triangles));
     for (let i = 0; i < places.length; ++i) position.data[i] = places[i] - box[i % 3] / 2;
     const tension = colour?.tension && surfaces.tension(between);
     for (let own = 0; own < surfaces.count; ++own) {
+      if (Number.isNaN(nodes[3 * surfaces.first[own]])) continue;
       const cell = this.places[own];
       if (tension && this.view.cell !== cell) {
         for (let i = surfaces.first[own]; i < surfaces.first[own + 1]; ++i) tones.data.set(rampRgb(rampStops.tension, (tension[i] + 1) / 2), 3 * i);

@@ -186,6 +186,7 @@ TEST_CASE("outlines whose first nodes do not fit their points are refused with f
       damaged.write("/frames/000000/membranes/points", std::vector<double>(8), "m");
       damaged.write("/frames/000000/membranes/tension", std::vector<double>(4), "N/m");
       damaged.write("/frames/000000/membranes/first", first, "1");
+      damaged.write("/frames/000000/membranes/cell", std::vector<int>{0, 1, 1, 1}, "1");
       damaged.close();
     }
     const FrameReader reader(file);
@@ -208,6 +209,7 @@ TEST_CASE("tensions that do not fit the points are refused with file, frame and 
       damaged.write("/frames/000000/membranes/points", std::vector<double>(8), "m");
       damaged.write("/frames/000000/membranes/tension", std::vector<double>(tensions), "N/m");
       damaged.write("/frames/000000/membranes/first", std::vector<int>{0, 4}, "1");
+      damaged.write("/frames/000000/membranes/cell", std::vector<int>(4), "1");
       damaged.close();
     }
     const FrameReader reader(file);
