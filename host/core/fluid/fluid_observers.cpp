@@ -283,6 +283,16 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
     const auto wall_of = [&](const auto& c) {
       return !beyond(1, c[1]) ? Sums::other : c[1] < 0 ? Sums::lower : Sums::upper;
     };
+    // Along x, what pressure gives to a wall by a link in direction q that crosses an opening, too: that is the
+    // opening's. Elsewhere such links come in pairs, and their pressures cancel.
+    const auto of_opening = [&](int q, int x) {
+      const int place = x + Set::velocity[q][0];
+      const Domain<Set::dimension>& domain = state.setting.domain;
+      if (!(place < 0 && domain.wall_below(0)) && !(place >= state.nx() && domain.wall_above(0))) return 0.0;
+      double density = 0;
+      for (const T* const population : in) density += static_cast<double>(population[x]);
+      return 2 * Set::weight[q] * density;
+    };
     // What a plane in direction q gets, times `sign`.
     const auto add_plane = [&](int q, int x, double sign) {
       const auto& c = Set::velocity[q];
@@ -290,7 +300,7 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
       const double speed = wall == Sums::other ? 0 : wall == Sums::lower ? walls.lower : walls.upper;
       const double force = 2 * static_cast<double>(in[Set::opposite[q]][x]) + 6 * Set::weight[q] * c[0] * speed;
       for (int k = 0; k < Set::dimension; ++k)
-        if (c[k] != 0) sums.add(wall, k, sign * c[k] * force);
+        if (c[k] != 0) sums.add(wall, k, sign * c[k] * (k == 0 ? force - of_opening(q, x) : force));
     };
     for (int q = 1; q < Set::velocity_count; ++q) {
       const auto& c = Set::velocity[q];
@@ -304,7 +314,9 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
       if (plane) add_plane(Set::opposite[q], x, -1);  // a wall before it takes all
       for (int k = 0; k < Set::dimension; ++k) {
         if (Set::velocity[q][k] != 0)
-          sums.add(Sums::other, k, -Set::velocity[q][k] * (left + static_cast<double>(in[q][x])));
+          sums.add(Sums::other, k,
+                   -Set::velocity[q][k] *
+                       (left + static_cast<double>(in[q][x]) - (k == 0 ? of_opening(Set::opposite[q], x) : 0)));
       }
     });
   }
