@@ -22,10 +22,8 @@ constexpr Observable opening_flow(const char* name, bool space, const char* doc)
   return made;
 }
 
-constexpr const char *through_inlet =
-                         "flow through all of the inlet, along +x, at the first nodes behind it; in two "
-                         "dimensions per depth",
-                     *through_outlet = "likewise, of the outlet, at the last nodes before it";
+constexpr const char* through_inlet = "flow through all of the inlet, along +x, at the first nodes behind it";
+constexpr const char* through_outlet = "likewise, of the outlet, at the last nodes before it";
 
 }  // namespace
 

@@ -52,6 +52,38 @@ TEST_CASE("the width of a channel at an angle is that from wall to wall") {
   CHECK(tilted.apart == 0);
 }
 
+TEST_CASE("between openings a way leads from end to end, and need not come again") {
+  const std::string open = R"("x": {"lower": {"inlet": {"mean_velocity": "1 mm/s"}},
+                                    "upper": {"outlet": {"pressure": "0 Pa"}}}, )";
+  const std::string ways =
+      R"("walls": {"within": {"union": [{"box": {"lower": ["0 um", "2 um"], "upper": ["20 um", "8 um"]}},
+      {"box": {"lower": ["14 um", "2 um"], "upper": ["20 um", "18 um"]}},
+      {"box": {"lower": ["14 um", "13 um"], "upper": ["40 um", "18 um"]}}]}})";
+  const auto stairs = passages(plane + open + ways);
+  CHECK(stairs.through_x);
+  CHECK(!passages(plane + ways).through_x);
+  CHECK(stairs.open[0] == Approx(6 * um));
+  CHECK(stairs.open[1] == Approx(5 * um));
+  CHECK(stairs.least_open == Approx(5 * um));
+}
+
+TEST_CASE("a drawn channel that ends at openings goes on beyond them, its ends no walls") {
+  const test::ScratchFolder folder;
+  const auto file = folder.write("scene.json", R"({"rouleau": 1, "domain": {)" + plane + R"(
+      "x": {"lower": {"inlet": {"mean_velocity": "1 mm/s"}}, "upper": {"outlet": {"pressure": "0 Pa"}}},
+      "walls": {"within": {"outline": {"points":
+          [["0 um", "2 um"], ["40 um", "4 um"], ["40 um", "16 um"], ["0 um", "18 um"]]}}}},
+      "fluid": {"density": "1 g/cm3", "viscosity": "1 cP"}, "stages": [{"name": "flow", "duration": "1 ms"}]})");
+  const scene::Scene scene = plan::read_scene(file);
+  const auto& region = *scene.domain.region_in_plane;
+  const double slope = std::atan(0.05);
+  for (const double x : {5.0, 20.0, 35.0})
+    CHECK(region.distance({x * um, 10 * um}).value == Approx((8 - 0.05 * x) * std::cos(slope) * um));
+  for (const double y : {10.0, 2.5})
+    CHECK(region.distance({-3 * um, y * um}).value == Approx(region.distance({3 * um, y * um}).value));
+  CHECK(scene.domain.content() == Approx(40 * um * 14 * um));
+}
+
 TEST_CASE("corners, and wedges between walls that touch, are no passages") {
   const auto touching = passages(plane + closed + R"("obstacles": [)" + disc(20, 3, 3.2) + "]");
   CHECK(touching.narrowest == Approx(4 * 13.8).epsilon(0.01));
