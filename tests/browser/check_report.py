@@ -475,6 +475,46 @@ class The_page_of_a_run_in_three_dimensions(PageCase):
             self.assertNotEqual(page.run(self.PIXELS)[1], first)
             self.assert_sound(page, SCREENS[screen]["width"])
 
+    def test_draws_a_cell_while_it_is_there(self):
+        begin, rest = (self.directory / "report.html").read_text().split('<script type="application/json" id="data">', 1)
+        data, end = rest.split("</script>", 1)
+        data = json.loads(data)
+        first, last = 2, len(data["step"]) - 3  # at these outputs and between
+        cells = data["cells"]
+        cells["ids"], cells["from"] = [7], [first]
+        for name, lines in cells.items():
+            if name == "aggregate":
+                cells[name] = [[7] if first <= k <= last else [] for k in range(len(lines))]
+            elif name not in ("ids", "types", "from"):
+                cells[name] = [lines[0][first:last + 1]]
+        for drawn, outputs in (("outlines", range(len(data["step"]))), ("surfaces", data["surfaces"]["outputs"])):
+            drawn = data[drawn]
+            drawn["cells"] = [7]
+            for k, output in enumerate(outputs):
+                if not first <= output <= last:
+                    drawn["there"][k], drawn["nodes"][k], drawn["origin_um"][k], drawn["tension"]["values"][k] = [], "", [], ""
+        file = self.directory / "coming.html"
+        file.write_text(f'{begin}<script type="application/json" id="data">{json.dumps(data)}</script>{end}')
+        page = self.open(file)
+        page.run(Every_page_on_every_screen.DRAWN)
+        for colour in page.run("[...document.querySelector('select[aria-label=\"Cells by\"]').options].map(o => o.value)"):
+            page.run(f"(s => {{ s.value = '{colour}'; s.dispatchEvent(new Event('change')); }})(document.querySelector('select[aria-label=\"Cells by\"]'))")
+            seen = {}
+            for place in (0, first - .6, first - .4, first, last, last + .4, last + .6, last + 2):
+                page.run(f"timeline.seek({place})")
+                there = page.run("timeline.animation.outlines.has(timeline.animation.nodes(), 0)")
+                self.assertEqual(there, first - .5 < place < last + .5, (colour, place))
+                seen.setdefault(there, set()).add(page.run(self.PIXELS)[0])
+            self.assertEqual(len(seen[False]), 1, "a cell that is not there is drawn")
+            self.assertGreater(min(seen[True]), max(seen[False]) + 200, "a cell that is there is not drawn")
+        self.assertEqual(page.run("charts.flatMap(c => c.lines).filter(l => l.cell === 0).map(l => l.label)[0]"), "cell 7")
+        page.run("document.querySelector('select[aria-label=Cell]').value = '0'")
+        page.run("document.querySelector('select[aria-label=Cell]').dispatchEvent(new Event('change'))")
+        page.run("[...document.querySelectorAll('label')].find(l => l.textContent === 'Follow').querySelector('input').click()")
+        for place in (0, first, last + 2):
+            page.run(f"timeline.seek({place})")
+        self.assert_sound(page)
+
     def test_leaves_the_wheel_and_one_finger_to_the_page(self):
         page = self.open(self.directory / "report.html", part="#strain=0.4")
         page.run(Every_page_on_every_screen.DRAWN)

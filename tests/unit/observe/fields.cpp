@@ -166,3 +166,28 @@ TEST_CASE("fields in bands are those of the whole lattice, in three dimensions a
         R"(/domain={"size": ["12 um", "12 um", "12 um"], "nodes": [16, 16, 16],
                     "walls": {"tube": {"radius": "6 um"}}})"}});
 }
+
+TEST_CASE("between openings the vorticity of a velocity that grows along x is the same up to the ends") {
+  scene::Scene scene = plan::read_scene(four_cells, {driven, no_cells, none, "/domain/nodes=[64, 32]", fields});
+  const plan::Plan plan = plan::make_plan(scene, catalog());
+  auto setup = plan::make_solver_setup<2>(plan, 0);
+  setup.domain = core::Domain<2>({64, 32}, {false, false});
+  setup.openings.emplace();
+  setup.follow_cells = false;
+  auto cells = plan::make_cells<2>(scene);
+  core::Solver<double> solver(std::move(setup), cells);
+  constexpr double slope = 1e-4;
+  solver.fluid().set_state([](int x, int) { return core::Fluid<double>::State{0, {0, slope * x}, {}}; });
+  solver.fluid().settle();
+  scene.domain.periodic[0] = false;
+  const units::LatticeUnits& units = plan.stages.front().units;
+  const auto snapshot = observe::observe_fields(solver.fluid(), scene, units, 1 << 20);
+  for (const observe::Field& field : snapshot.fields) {
+    if (field.name != "vorticity") continue;
+    const std::vector<double> values = whole(field);
+    for (const std::size_t y : {std::size_t{1}, std::size_t{16}, std::size_t{30}}) {
+      for (std::size_t x = 0; x < 64; ++x)
+        CHECK(values[64 * y + x] == Approx(units.to_si(slope, units::dimension::rate)).epsilon(1e-9));
+    }
+  }
+}
