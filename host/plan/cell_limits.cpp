@@ -269,6 +269,8 @@ StartGaps start_gaps(const scene::Scene& scene) {
   constexpr std::size_t most = 20'000;
   StartGaps gaps;
   scene::Scene placed = scene;
+  placed.cells.resize(scene.placed().size());
+  placed.fed = 0;
   for (auto packing = scene.packings.rbegin(); packing != scene.packings.rend(); ++packing) {
     const auto first = placed.cells.begin() + packing->first;
     placed.cells.erase(first, first + packing->count);

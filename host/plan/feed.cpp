@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kept_apart = 2;    // spacings, from other cells and from walls
 constexpr double room_to_move = 3;  // spacings, beyond the reach of a stencil: in some steps and a half
-constexpr int places_at_once = 32;      // at a time
+constexpr int places_at_once = 32;  // at a time
 
 double duration_of(const scene::Scene& scene) {
   double sum = 0;
@@ -53,6 +53,15 @@ void add_fed_cells(scene::Scene& scene) {
   scene.fed = static_cast<std::size_t>(feed.count);
   scene.cells.insert(scene.cells.end(), scene.fed, {feed.type, 0.5 * scene.domain.size, 0, feed.pointer});
   scene::check_membrane_nodes(scene);
+}
+
+std::span<const scene::CellPlacement> cells_at_once(const scene::Scene& scene) {
+  const scene::Feed* const feed = scene.domain.feed();
+  if (feed == nullptr) return scene.cells;
+  const double fed =
+      std::ceil(feed->hematocrit * scene.domain.content() / shape::enclosed_by(scene.cell_types[feed->type]));
+  const auto come = static_cast<std::size_t>(std::min(fed, static_cast<double>(scene.fed)));
+  return {scene.cells.data(), scene.placed().size() + come};
 }
 
 template <int D>

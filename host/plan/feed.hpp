@@ -1,6 +1,7 @@
 // Cells that come in through an inlet: how many, when, and where each tries to appear.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/domain/bounding_box.hpp"
@@ -15,6 +16,10 @@ namespace rouleau::plan {
 /// Adds an entry to scene.cells for each cell that can come in while the stages last. They are not placed: their places
 /// stand for none. Throws Error(bad_input) where they are more than can be computed.
 void add_fed_cells(scene::Scene& scene);
+
+/// The cells that are there at one time, about: those that are placed, and as many of the others as make up the feed's
+/// hematocrit.
+std::span<const scene::CellPlacement> cells_at_once(const scene::Scene& scene);
 
 /// Where cells come in, and how close to the openings they may be. They are mixed well before they come: a cell's
 /// middle crosses the inlet anywhere, as often as the developed flow brings fluid there, at any angle.

@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "constants.hpp"
 #include "core/solver/schedule.hpp"
+#include "feed.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/lattice.hpp"
 #include "scene/scene_reader.hpp"
@@ -29,7 +30,7 @@ double hematocrit(const scene::Scene& scene) {
   std::vector<double> enclosed;
   for (const scene::CellType& type : scene.cell_types) enclosed.push_back(shape::enclosed_by(type));
   double sum = 0;
-  for (const scene::CellPlacement& cell : scene.cells) sum += enclosed[cell.type];
+  for (const scene::CellPlacement& cell : cells_at_once(scene)) sum += enclosed[cell.type];
   return sum / scene.domain.content();
 }
 

@@ -9,6 +9,7 @@
 #include "monitor/equilibrium_watch.hpp"
 #include "monitor/rest_watch.hpp"
 #include "observe/aggregate_history.hpp"
+#include "observe/cell_traffic.hpp"
 #include "observe/energy.hpp"
 #include "observe/observer.hpp"
 #include "observe/rheology_history.hpp"
@@ -44,9 +45,9 @@ class PassCosts {
 /// Cells that come and go through openings.
 struct TrafficState {
   std::vector<int> there;  ///< in their order
-  int came = 0, left = 0;
-  long next = 0;  ///< step of the run at which to look who comes and goes
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(TrafficState, there, came, left, next)
+  long next = 0;           ///< step of the run at which to look who comes and goes
+  observe::CellTraffic cells;
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(TrafficState, there, next, cells)
 };
 
 struct RunState {

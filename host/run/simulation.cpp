@@ -289,6 +289,10 @@ class Simulation final : StepHooks {
     observe::Snapshot snapshot = state_.observer.observe(solver(), fluid, setting(), with_fields);
     if (ranks().first()) {
       course_.date(snapshot);
+      if (scene().domain.is_open()) {
+        state_.traffic.cells.flowed({snapshot.inlet_flow, snapshot.outlet_flow}, snapshot.time);
+        state_.traffic.cells.tell(snapshot);
+      }
       const units::LatticeUnits& units = setting().units;
       state_.energy.follow(snapshot, setting().is_driven(),
                            units.to_si(solver().slight_energy(), units::dimension::energy_per_depth) /
@@ -339,6 +343,8 @@ class Simulation final : StepHooks {
     for (const std::vector<long>& of_rank : core::all_of(ranks(), std::vector<long>{peak_memory_bytes()}))
       s.peak_rss_bytes += of_rank.front();
     s.checkpoint_step = checkpoints_.kept();
+    if (observe::has_traffic(scene()))
+      s.cell_traffic = state_.traffic.cells.summary(scene().domain.in_plane() ? "m2" : "m3");
     s.area_leakage_max = observe::Observer::area_leakage(engine_.cells(), ranks());
   }
 

@@ -112,6 +112,7 @@ Json to_json(const Summary& summary) {
   for (const observe::AggregateEvent& event : summary.aggregate_history) history.push_back(to_json(event));
   result["energy"] = summary.energy;
   result["rheology"] = summary.rheology;
+  if (!summary.cell_traffic.is_null()) result["cell_traffic"] = summary.cell_traffic;
   if (summary.plan.attracting.empty()) {
     for (Json& stage : result["rheology"]) stage["dissociation"] = Json::array();  // what was not joined does not part
   }

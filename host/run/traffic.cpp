@@ -6,7 +6,15 @@
 #include <numeric>
 #include <utility>
 
+#include "shape/extent.hpp"
+
 namespace rouleau::run {
+
+namespace {
+
+constexpr int lower_end = 0, upper_end = 1;
+
+}  // namespace
 
 template <int D>
 Traffic<D>::Traffic(const plan::Plan& plan, Engine<D>& engine, RunState& state)
@@ -14,6 +22,9 @@ Traffic<D>::Traffic(const plan::Plan& plan, Engine<D>& engine, RunState& state)
   if (!is_open()) return;
   state.traffic.there.resize(plan.scene->placed().size());
   std::iota(state.traffic.there.begin(), state.traffic.there.end(), 0);
+  for (const scene::CellType& type : plan.scene->cell_types) content_.push_back(shape::enclosed_by(type));
+  for (const int c : state.traffic.there)
+    state.traffic.cells.came(c, content_[plan.scene->cells[c].type], 0, observe::CellTraffic::no_opening);
 }
 
 template <int D>
@@ -48,7 +59,7 @@ template <int D>
 void Traffic<D>::find_come(double time) {
   const scene::Feed* const feed = plan_.scene->domain.feed();
   if (feed == nullptr) return;
-  for (int k = state_.traffic.came; k < inflow().due(time); ++k) {
+  for (int k = static_cast<int>(state_.traffic.cells.in()); k < inflow().due(time); ++k) {
     auto nodes = free_place(feed->first + k);
     if (!nodes) return;  // it waits, and those behind it
     change_.come.push_back({feed->first + k, *std::move(nodes)});
@@ -79,9 +90,12 @@ auto Traffic<D>::take() -> Change {
   engine_.change_cells(change.gone, change.come);
   TrafficState& traffic = state_.traffic;
   std::erase_if(traffic.there, [&](int c) { return std::binary_search(change.gone.begin(), change.gone.end(), c); });
-  for (const Arrival& arrival : change.come) traffic.there.push_back(arrival.cell);
-  traffic.came += static_cast<int>(change.come.size());
-  traffic.left += static_cast<int>(change.gone.size());
+  const double time = state_.time_at(plan_.stages[state_.stage]);
+  for (const int c : change.gone) traffic.cells.left(c, time, upper_end);
+  for (const Arrival& arrival : change.come) {
+    traffic.there.push_back(arrival.cell);
+    traffic.cells.came(arrival.cell, content_[plan_.scene->cells[arrival.cell].type], time, lower_end);
+  }
   return change;
 }
 

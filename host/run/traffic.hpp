@@ -47,6 +47,7 @@ class Traffic {
   const plan::Plan& plan_;
   Engine<D>& engine_;
   RunState& state_;
+  std::vector<double> content_;            ///< m3, or m2, of a cell of each type
   std::optional<plan::Inflow<D>> inflow_;  ///< made when first asked for
   Change change_;
 };

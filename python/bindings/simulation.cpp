@@ -83,6 +83,7 @@ class SimulationOf final : public Simulation, run::StepHooks {
     compute_forces();
     observe::Snapshot snapshot = state_.observer.observe(engine_.solver(), stage(), false);
     course_.date(snapshot);
+    state_.traffic.cells.tell(snapshot);
     return snapshot;
   }
 
