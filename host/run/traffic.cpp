@@ -94,6 +94,7 @@ auto Traffic<D>::take() -> Change {
   for (const int c : change.gone) traffic.cells.left(c, time, upper_end);
   for (const Arrival& arrival : change.come) {
     traffic.there.push_back(arrival.cell);
+    state_.observer.begin_with(arrival.nodes, 0, arrival.cell);
     traffic.cells.came(arrival.cell, content_[plan_.scene->cells[arrival.cell].type], time, lower_end);
   }
   return change;

@@ -125,7 +125,7 @@ void GhostCells<D>::renew(const std::vector<BoundingBox<D>>& boxes) {
   for_touching(
       boxes, domain, reach_.contact, [&](int c) { return owner_[c] == own; },
       [&](int c, int other) {
-        if (owner_[other] == own) return;
+        if (owner_[other] == own || owner_[other] == nobody) return;
         known_[other] = 1;
         near[owner_[other]].push_back(c);
       });
