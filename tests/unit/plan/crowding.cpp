@@ -15,7 +15,7 @@ namespace {
 
 scene::Scene scene_of_circles(bool periodic_y) {
   scene::Scene scene{};
-  scene.domain = {{20e-6, 10e-6}, {200, 100}, {true, periodic_y, true}};
+  scene.domain = {{20e-6, 10e-6}, {200, 100}, {}, {true, periodic_y, true}};
   scene.cell_types = {{"small", scene::Circle{0.2e-6}, 64, 1e-3, {}}, {"large", scene::Circle{0.5e-6}, 64, 1e-3, {}}};
   return scene;
 }

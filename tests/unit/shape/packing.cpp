@@ -29,7 +29,7 @@ constexpr double um = 1e-6, spacing = 0.2e-6;
 /// A box in two dimensions.
 struct Packed : PackedScene<Packed> {
   Packed(int nx, int ny, bool periodic_y, std::vector<Shape> shapes = {Biconcave{3.91 * um}}, int segments = 80) {
-    scene.domain = {{nx * spacing, ny * spacing}, {nx, ny}, {true, periodic_y, true}};
+    scene.domain = {{nx * spacing, ny * spacing}, {nx, ny}, {}, {true, periodic_y, true}};
     for (Shape& shape : shapes) {
       scene.cell_types.push_back({"type" + std::to_string(scene.cell_types.size()), shape, segments, 6e-3, {}});
     }

@@ -36,6 +36,7 @@ struct Packed : PackedScene<Packed> {
          const std::vector<Shape>& shapes = {Biconcave{3.91 * um}}) {
     scene.domain = {{nodes[0] * spacing, nodes[1] * spacing, nodes[2] * spacing},
                     {nodes.begin(), nodes.end()},
+                    {},
                     {true, periodic_y, periodic_z}};
     for (const Shape& shape : shapes) {
       CellType type{"type" + std::to_string(scene.cell_types.size()), shape, 0, 6e-3, {}};
