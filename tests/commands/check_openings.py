@@ -8,6 +8,7 @@ import csv
 import json
 import math
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -177,16 +178,17 @@ class Openings(unittest.TestCase):
 
     @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
     def test_a_run_that_is_killed_goes_on_to_the_same_bytes(self):
-        scene = changed(STEP, output={"cells": {"seconds": "0.05 ms"}, "checkpoint": {"seconds": "1 ms"}})
-        self.run_scene(scene, "whole")
-        process = subprocess.Popen([PROGRAM, "run", self.write(scene), "--out", "killed", "--quiet"], cwd=self.folder)
-        series = self.folder / "killed/series.csv"
-        while process.poll() is None and not (series.exists() and len(series.read_text().splitlines()) > 8):
-            pass
-        process.kill()
-        process.wait()
-        self.run_scene(scene, "killed", "--resume")
-        self.assertEqual((self.folder / "killed/series.csv").read_text(), (self.folder / "whole/series.csv").read_text())
+        for name, whole in (("plane", STEP), ("space", TUBE)):
+            scene = changed(whole, output={"cells": {"seconds": "0.02 ms"}, "checkpoint": {"seconds": "1 ms"}})
+            self.run_scene(scene, name)
+            process = subprocess.Popen([PROGRAM, "run", self.write(scene), "--out", f"{name}-killed", "--quiet"], cwd=self.folder)
+            series = self.folder / f"{name}-killed/series.csv"
+            while process.poll() is None and not (series.exists() and len(series.read_text().splitlines()) > 8):
+                pass
+            process.kill()
+            self.assertEqual(process.wait(), -signal.SIGKILL)
+            self.run_scene(scene, f"{name}-killed", "--resume")
+            self.assertEqual(series.read_text(), (self.folder / name / "series.csv").read_text())
 
     def test_plan_tells_inlet_and_outlet(self):
         for scene, open_area, speed in ((CHANNEL, HEIGHT, 1.5e-3), (TUBE, math.pi * RADIUS ** 2, 2e-3),
