@@ -1,4 +1,5 @@
-"""Figures of runs with matplotlib."""
+"""Figures of runs with matplotlib. What is drawn (a Run, Outputs, Frame, Cell) is handed over by reading.py, which imports this
+module: its types are not named here."""
 
 from __future__ import annotations
 
@@ -6,12 +7,9 @@ import html
 import json
 import os
 import pathlib
-from typing import TYPE_CHECKING, Any, Sequence
+from typing import Any, Sequence
 
 from .errors import Error, Fault
-
-if TYPE_CHECKING:
-    from .reading import Cell, Frame, Outputs, Run
 
 MOST_LINES = 12
 LABELS = {"strain": "strain", "deformation": "deformation", "min_gap_m": "gap to the nearest cell (µm)",
@@ -28,7 +26,7 @@ def label_of(column: str) -> tuple[str, float]:
     return LABELS.get(column, column.replace("_", " ")), 1.0
 
 
-def plot(outputs: Outputs, columns: list[str], over: str | None, axes: Any) -> Any:
+def plot(outputs: Any, columns: list[str], over: str | None, axes: Any) -> Any:
     """Outputs.plot"""
     from matplotlib import pyplot
     if not columns:
@@ -45,7 +43,7 @@ def plot(outputs: Outputs, columns: list[str], over: str | None, axes: Any) -> A
     return drawn[0] if len(drawn) == 1 else drawn
 
 
-def plot_column(outputs: Outputs, column: str, over: str, axis: Any) -> None:
+def plot_column(outputs: Any, column: str, over: str, axis: Any) -> None:
     """Lines of a column of cells.csv or series.csv."""
     label, scale = label_of(column)
     along = label_of(over)[1]
@@ -74,7 +72,7 @@ def plot_column(outputs: Outputs, column: str, over: str, axis: Any) -> None:
     axis.set_ylabel(label)
 
 
-def overview(outputs: Outputs, over: str | None) -> Any:
+def overview(outputs: Any, over: str | None) -> Any:
     """Cells at four instants, deformation and gaps."""
     from matplotlib import pyplot
     run = outputs._run
@@ -100,7 +98,7 @@ def overview(outputs: Outputs, over: str | None) -> Any:
     return [*axes, *lines]
 
 
-def images(cell: Cell, size_m: Sequence[float]) -> list[Any]:
+def images(cell: Any, size_m: Sequence[float]) -> list[Any]:
     """Outlines [nodes, 2] of a cell in m, in the periodic box; on all sides where it reaches over the border. Between walls across
     y none does."""
     home = cell.moved_into(size_m)
@@ -109,7 +107,7 @@ def images(cell: Cell, size_m: Sequence[float]) -> list[Any]:
     return [moved for shift in shifts if ((moved := home + shift).max(axis=0) > 0).all() and (moved.min(axis=0) < size_m[:2]).all()]
 
 
-def wall_patches(frame: Frame) -> list[Any]:
+def wall_patches(frame: Any) -> list[Any]:
     """Walls that are no planes: one patch, in um."""
     import numpy
     from matplotlib.patches import PathPatch
@@ -121,7 +119,7 @@ def wall_patches(frame: Frame) -> list[Any]:
     return [PathPatch(Path(numpy.vstack(closed), codes), facecolor="0.8", edgecolor="0.25", linewidth=0.8)]
 
 
-def plot_frame(frame: Frame, colour: str, field: str | None, axes: Any) -> Any:
+def plot_frame(frame: Any, colour: str, field: str | None, axes: Any) -> Any:
     """Frame.plot"""
     import numpy
     from matplotlib import pyplot
@@ -160,7 +158,7 @@ def plot_frame(frame: Frame, colour: str, field: str | None, axes: Any) -> Any:
 class Animation:
     """Frames one after another. A notebook shows it as the last value of a cell."""
 
-    def __init__(self, run: Run, most_frames: int, colour: str, field: str | None) -> None:
+    def __init__(self, run: Any, most_frames: int, colour: str, field: str | None) -> None:
         frames = run.frames
         if field is not None:
             frames = frames[frames["fields"]]

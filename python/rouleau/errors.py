@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from typing import TYPE_CHECKING, Sequence
-
-if TYPE_CHECKING:
-    from .reading import Run
+from typing import Any, Sequence
 
 
 @dataclasses.dataclass(frozen=True)
@@ -39,13 +36,13 @@ class Error(Exception):
     first fault; `faults` has all of them.
     """
 
-    def __init__(self, faults: str | Fault | Sequence[Fault], *, exit_code: int = 2, run: Run | None = None) -> None:
+    def __init__(self, faults: str | Fault | Sequence[Fault], *, exit_code: int = 2, run: Any = None) -> None:
         if isinstance(faults, str):
             faults = Fault(faults)
         self.faults: list[Fault] = [faults] if isinstance(faults, Fault) else list(faults)
         #: 1 the simulation failed, 2 bad input, 3 a plugin was refused, 4 input or output
         self.exit_code = exit_code
-        #: the run that failed, with all that it wrote; None where there is none
+        #: the run that failed (rouleau.Run), with all that it wrote; None where there is none
         self.run = run
         super().__init__("\n".join(map(str, self.faults)))
 

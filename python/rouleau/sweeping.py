@@ -89,7 +89,8 @@ def _run_of(scene: SceneLike, directory: pathlib.Path, changes: Mapping[str, Any
     except Error as error:
         if error.exit_code != FAILED or error.run is None:
             raise
-        return error.run
+        failed: Run = error.run
+        return failed
     if stop.is_set() and made.status == "interrupted":
         raise concurrent.futures.CancelledError
     return made

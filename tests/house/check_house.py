@@ -1,10 +1,11 @@
 """The house keeps its order: includes run down only and in no circle, lines, functions, units and folders stay small, the map
-of docs/architecture.md is that of the includes, and no name has two definitions.
+of docs/architecture.md is that of the includes, and no name has two definitions. The package's modules import each other in no circle.
 
 usage: check_house.py SOURCE [--write-map]
   --write-map   writes the arrows of the map's tables from the includes, and checks nothing
 """
 
+import ast
 import collections
 import re
 import sys
@@ -14,6 +15,7 @@ from pathlib import Path
 
 SOURCE = Path(sys.argv[1])
 HOST, TOOLS = SOURCE / "host", SOURCE / "tools"
+PACKAGE = SOURCE / "python/rouleau"
 MAP = SOURCE / "docs/architecture.md"
 
 # A folder may include those before it (docs/architecture.md); core is what everything else stands on.
@@ -95,6 +97,15 @@ def unit_arrows():
     arrows = collections.defaultdict(set)
     for path in sources():
         arrows[unit(path)] |= {unit(other) for other in includes(path)} - {unit(path)}
+    return arrows
+
+
+def package_arrows():
+    """Modules of the package that each imports: also within functions, and for types alone."""
+    arrows = {}
+    for path in sorted(PACKAGE.glob("*.py")):
+        imports = [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.ImportFrom) and node.level]
+        arrows[path.stem] = {name for node in imports for name in ([node.module] if node.module else [entry.name for entry in node.names])}
     return arrows
 
 
@@ -185,6 +196,11 @@ class Includes_run_down(unittest.TestCase):
 
     def test_no_units_include_each_other_in_a_circle(self):
         self.assertEqual(circles(unit_arrows()), [])
+
+    def test_no_modules_of_the_package_import_each_other_in_a_circle(self):
+        arrows = package_arrows()
+        self.assertLessEqual({"drawing", "errors"}, arrows["reading"])
+        self.assertEqual(circles(arrows), [])
 
     def test_the_map_is_drawn_from_the_includes(self):
         map_of_the_house = MAP.read_text()
