@@ -2,7 +2,6 @@
 import copy
 import math
 import struct
-import zlib
 
 
 def changed(scene, **pointers):
@@ -14,15 +13,6 @@ def changed(scene, **pointers):
             place = place[int(key) if key.isdigit() else key]
         place[int(last) if isinstance(place, list) else last] = value
     return scene
-
-
-def png(rows):
-    """Grey values from 0 to 255, the lowest row first, as a PNG file."""
-    def chunk(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-    packed = zlib.compress(b"".join(b"\0" + bytes(row) for row in reversed(rows)))
-    head = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 0, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", packed) + chunk(b"IEND", b"")
 
 
 def tube_stl(radius, length, around=96, lids=True):

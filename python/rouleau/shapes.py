@@ -51,7 +51,7 @@ def mask(values: ArrayLike, path: str | os.PathLike[str], pixel: Any, at: Any = 
     path = pathlib.Path(path)
     files = [path] if grey.ndim == 2 else [path.with_name(f"{path.stem}-{k:04}{path.suffix}") for k in range(len(grey))]
     for file, layer in zip(files, grey[None] if grey.ndim == 2 else grey):
-        file.write_bytes(_png(numpy.rint(255 * layer[::-1]).astype(numpy.uint8)))
+        file.write_bytes(png([row.tobytes() for row in numpy.rint(255 * layer).astype(numpy.uint8)]))
     more = {"at": at, "spacing": spacing}
     return {"image": {"file": os.fspath(files[0]) if grey.ndim == 2 else [os.fspath(file) for file in files], "pixel": pixel, "fluid": "light",
                       **{key: value for key, value in more.items() if value is not None}}}
@@ -103,15 +103,13 @@ def _holds(polygon: Floats, place: Floats) -> bool:
     return bool((at > place[0]).sum() % 2)
 
 
-def _png(grey: NDArray[numpy.uint8]) -> bytes:
-    """A picture [rows, columns], the highest row first, as an 8-bit greyscale PNG."""
-    rows, columns = grey.shape
-
+def png(rows: Sequence[Sequence[int]]) -> bytes:
+    """A greyscale PNG of values from 0 to 255, the lowest row first."""
     def chunk(kind: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    lines = b"".join(b"\0" + row.tobytes() for row in grey)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", columns, rows, 8, 0, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(lines, 9)) + \
-        chunk(b"IEND", b"")
+    head = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 0, 0, 0, 0)
+    lines = zlib.compress(b"".join(b"\0" + bytes(row) for row in reversed(rows)), 9)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", lines) + chunk(b"IEND", b"")
 
 
 Line = list[tuple[float, float]]

@@ -13,8 +13,11 @@ import tempfile
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from scene_parts import changed, png, tube_stl  # noqa: E402
+TESTS = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TESTS), str(TESTS.parent / "python")]
+sys.dont_write_bytecode = True
+from rouleau.shapes import png  # noqa: E402
+from scene_parts import changed, tube_stl  # noqa: E402
 
 PROGRAM = Path(sys.argv[1]).resolve()
 WITHOUT_WHOLE_RUNS = "--no-whole-runs" in sys.argv  # where the program is ten times slower

@@ -19,11 +19,12 @@ import unittest
 
 sys.dont_write_bytecode = True
 SOURCE, BUILD = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
-sys.path[:0] = [str(SOURCE / "scripts/documentation"), str(SOURCE / "tests"), str(pathlib.Path(__file__).parent)]
+sys.path[:0] = [str(SOURCE / "scripts/documentation"), str(SOURCE / "tests"), str(SOURCE / "python"), str(pathlib.Path(__file__).parent)]
 
 from page_commands import PROGRAMS  # noqa: E402
 from pages import PAGES  # noqa: E402
-from scene_parts import png, tube_stl  # noqa: E402
+from rouleau.shapes import png  # noqa: E402
+from scene_parts import tube_stl  # noqa: E402
 
 PROGRAM = BUILD / "bin/rouleau"
 SHIPPED = SOURCE / "plugins"
