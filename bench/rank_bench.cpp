@@ -19,6 +19,7 @@
 #include "core/solver/solver.hpp"
 #include "measure.hpp"
 #include "plan/read_scene.hpp"
+#include "run/stepper.hpp"
 #include "window.hpp"
 
 namespace rouleau::bench {
@@ -167,7 +168,7 @@ core::StepPasses Costs::timed(core::Solver<T, Set>& solver) {
 
 /// A window's fluid and cells in one piece, or one rank's part in them.
 template <class T, class Set>
-class Part {
+class Part : run::StepHooks {
  public:
   static constexpr int D = Set::dimension;
 
@@ -179,24 +180,26 @@ class Part {
     solver_.start();
     solver_.fluid().set_profile([&](double y) { return window.flow.velocity(y); },
                                 [&](double y) { return window.flow.slope(y); });
+    passes_ = with_runner(solver_.passes());
+    stepper_.attend_next(run::Stepper::never);
   }
   Part(const Part&) = delete;
   Part& operator=(const Part&) = delete;
 
   [[nodiscard]] core::Solver<T, Set>& solver() { return solver_; }
   [[nodiscard]] const core::Cells<D>& cells() const { return cells_; }
-  void step(const core::StepPasses& passes) {
-    core::Barrier nobody(1);
-    const auto run = [&](std::size_t first, std::size_t last) { passes.run(first, last, Worker{}, nobody); };
-    const std::size_t all = passes.passes.size();
-    if (runs() && all > 2) {
-      // Before its nodes are located: who reads their velocities goes by that, here and on other ranks.
-      run(0, all - 2), move_runner(), run(all - 2, all);
-    } else {
-      run(0, all);
-    }
+  /// The runner moves before its nodes are located: who reads their velocities goes by that, here and on other ranks.
+  [[nodiscard]] core::StepPasses with_runner(core::StepPasses passes) {
+    if (runner_ < 0) return passes;
+    core::Pass& locate = passes.passes[passes.passes.size() - 2];
+    locate.run = [this, run = std::move(locate.run)](Worker worker) {
+      if (cells_.owns(runner_)) move_runner();
+      run(worker);
+    };
+    return passes;
   }
-  void step() { step(solver_.passes()); }
+  void step(const core::StepPasses& passes) { step_ = stepper_.take(passes, step_, step_ + 1, 1); }
+  void step() { step(passes_); }
 
  private:
   static core::BasicSolverSetup<D> setup_of(const Window<D>& window, const core::Ranks<D>& ranks) {
@@ -205,20 +208,25 @@ class Part {
     return setup;
   }
 
-  [[nodiscard]] bool runs() const { return runner_ >= 0 && cells_.owns(runner_); }
+  bool before_forces(long) override { return true; }
+  bool after_forces(long, bool) override { return true; }
+  [[nodiscard]] bool wants_a_look() const override { return false; }
+
   void move_runner() {
     constexpr double way = 3;  // spacings, there and back
     const long there = std::lround(std::ceil(way / speed_));
-    const double by = steps_++ / there % 2 == 0 ? speed_ : -speed_;
+    const double by = moves_++ / there % 2 == 0 ? speed_ : -speed_;
     for (int i = cells_.cells[runner_].first; i < cells_.cells[runner_].end(); ++i) cells_.position[0][i] += by;
     cells_.largest_step[runner_] += speed_;
   }
 
   int runner_;
   double speed_;
-  long steps_ = 0;
+  long step_ = 0, moves_ = 0;
   core::Cells<D> cells_;
   core::Solver<T, Set> solver_;
+  core::StepPasses passes_;
+  run::Stepper stepper_{*this};
 };
 
 /// What a rank has come to.
@@ -385,7 +393,7 @@ void time_alone(const Window<Set::dimension>& window, const Received& received, 
   }
   Replay<T, Set> replay(window, received);
   Costs costs(&replay.player());
-  const core::StepPasses passes = costs.timed(replay.part().solver());
+  const core::StepPasses passes = replay.part().with_runner(costs.timed(replay.part().solver()));
   replay.for_steps(0, first_steps, [&] { replay.part().step(passes); });
   costs.forget();
   replay.for_steps(first_steps, steps, [&] { replay.part().step(passes); });
