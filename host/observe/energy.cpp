@@ -51,7 +51,7 @@ template CellEnergy cell_energy(core::AnySolver<3>&);
 
 template <int D>
 EnergySnapshot observe_energy(core::AnySolver<D>& solver, const core::Energetics<D>& fluid,
-                              const units::LatticeUnits& units) {
+                              const core::WallForces<D>& forces, const units::LatticeUnits& units) {
   const core::FluidSetting<D>& setting = solver.fluid().setting();
   // What the lattice has is summed over its depth.
   double depth = 1;
@@ -65,10 +65,9 @@ EnergySnapshot observe_energy(core::AnySolver<D>& solver, const core::Energetics
   if (!setting.domain.periodic[1] || setting.solid) energy.wall_power = 0;  // solid nodes are at rest
   const core::WallVelocity& walls = solver.fluid().last_walls();
   if (setting.solid && (walls.lower != 0 || walls.upper != 0)) {
-    const core::WallForces<D> forces = solver.wall_forces();
     energy.wall_power = -(forces.lower[0] * walls.lower + forces.upper[0] * walls.upper) * watt;
   } else if (!setting.domain.periodic[1] && !setting.solid) {
-    const auto stress = solver.wall_stress();  // what is done to the walls
+    const auto stress = solver.mean_wall_stress(forces);  // what is done to the walls
     energy.wall_power =
         -(stress.lower * walls.lower + stress.upper * walls.upper) * setting.domain.size[0] * depth * watt;
   }
@@ -105,8 +104,10 @@ EnergySnapshot observe_energy(core::AnySolver<D>& solver, const core::Energetics
   return energy;
 }
 
-template EnergySnapshot observe_energy(core::AnySolver<2>&, const core::Energetics<2>&, const units::LatticeUnits&);
-template EnergySnapshot observe_energy(core::AnySolver<3>&, const core::Energetics<3>&, const units::LatticeUnits&);
+template EnergySnapshot observe_energy(core::AnySolver<2>&, const core::Energetics<2>&, const core::WallForces<2>&,
+                                       const units::LatticeUnits&);
+template EnergySnapshot observe_energy(core::AnySolver<3>&, const core::Energetics<3>&, const core::WallForces<3>&,
+                                       const units::LatticeUnits&);
 
 void EnergyHistory::follow(const Snapshot& snapshot, bool driven, double floor) {
   const EnergySnapshot& energy = snapshot.energy;

@@ -22,13 +22,13 @@ template <int D>
 CellEnergy cell_energy(core::AnySolver<D>& solver);
 
 /// State before the next step of `solver`, whose forces have been computed and whose fluid is settled; `fluid`:
-/// measured of it.
+/// measured of it; `forces`: on walls across y, if there are any.
 template <int D>
 EnergySnapshot observe_energy(core::AnySolver<D>& solver, const core::Energetics<D>& fluid,
-                              const units::LatticeUnits& units);
+                              const core::WallForces<D>& forces, const units::LatticeUnits& units);
 template <int D>
 EnergySnapshot observe_energy(core::AnySolver<D>& solver, const units::LatticeUnits& units) {
-  return observe_energy(solver, solver.fluid().energetics(), units);
+  return observe_energy(solver, solver.fluid().energetics(), solver.wall_forces(), units);
 }
 
 /// Follows the total energy through the stages at rest, where it may only fall.

@@ -259,8 +259,9 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
   if (scene_->domain.openings) drive = observe_openings(fluid, *scene_, units, snapshot);
   const bool oscillates = setting.oscillation.any();
   const bool has_walls = !scene_->domain.periodic[1] || scene_->domain.has_shapes();  // across y, or of any shape
+  const auto on_walls = has_walls ? solver.wall_forces() : core::WallForces<D>{};
   if (has_walls) {
-    const auto stress = solver.wall_stress();
+    const auto stress = solver.mean_wall_stress(on_walls);
     snapshot.wall_stress_lower = units.to_si(stress.lower, units::dimension::pressure);
     snapshot.wall_stress_upper = units.to_si(stress.upper, units::dimension::pressure);
     if (setting.shear_rate != 0 && !oscillates)
@@ -307,7 +308,7 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
     snapshot.area_leakage_max = area_leakage(cells, ranks);
     snapshot.membranes = observe_membranes(solver, units);
   }
-  snapshot.energy = observe_energy(solver, measured.energetics.value(), units);
+  snapshot.energy = observe_energy(solver, measured.energetics.value(), on_walls, units);
   if (with_fields) snapshot.fields = observe_fields(solver.fluid(), *scene_, units);
   return snapshot;
 }

@@ -84,7 +84,8 @@ class AnySolver {
   /// (AnyFluid::wall_forces) and membranes beside them by the forces that they have now; and the shear stresses of that
   /// (AnyFluid::wall_stress).
   [[nodiscard]] WallForces<D> wall_forces() const;
-  [[nodiscard]] typename AnyFluid<D>::WallStress wall_stress() const;
+  [[nodiscard]] typename AnyFluid<D>::WallStress wall_stress() const { return mean_wall_stress(wall_forces()); }
+  [[nodiscard]] typename AnyFluid<D>::WallStress mean_wall_stress(const WallForces<D>& forces) const;
   /// Whether a node has left the domain, on any rank; and which, of this rank's cells; -1: none.
   [[nodiscard]] bool escaped() const { return cell_tasks() != nullptr && cell_tasks()->escaped(); }
   [[nodiscard]] int escaped_node() const { return cell_tasks() != nullptr ? cell_tasks()->escaped_node() : -1; }

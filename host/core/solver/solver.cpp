@@ -301,8 +301,7 @@ WallForces<D> AnySolver<D>::wall_forces() const {
 }
 
 template <int D>
-typename AnyFluid<D>::WallStress AnySolver<D>::wall_stress() const {
-  const WallForces<D> forces = wall_forces();
+typename AnyFluid<D>::WallStress AnySolver<D>::mean_wall_stress(const WallForces<D>& forces) const {
   if (!setup_.solid) return fluid().mean_wall_stress(forces);
   const double mean = setup_.wall_area > 0 ? forces.all(0) / setup_.wall_area : NAN;
   return {mean, mean};
