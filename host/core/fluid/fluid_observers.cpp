@@ -156,11 +156,12 @@ void copy_moments(const FluidState<T, Set>& state, int i, Moments<Set::dimension
   state.mask.for_spans(i, [&](const MaskSpan& span) {
     for (int x = span.begin; x < span.end; ++x) {
       Moments<Set::dimension>& m = to[x];
-      for (int q = 0; q < Set::velocity_count; ++q) {
+      Set::for_each_velocity([&](auto q) {
         const double f = static_cast<double>(in[q][x]);
         m.density += f;
-        for (int k = 0; k < Set::dimension; ++k) m.velocity[k] += Set::velocity[q][k] * f;
-      }
+        for (int k = 0; k < Set::dimension; ++k)
+          if (Set::velocity[q][k] != 0) m.velocity[k] += Set::velocity[q][k] * f;
+      });
       const bool own_force = state.has_force(span);
       for (int k = 0; k < Set::dimension; ++k)
         m.velocity[k] +=
