@@ -152,7 +152,8 @@ std::string opening(const plan::Plan& plan, const plan::PlanReport& report, int 
   for (const plan::LateStart& start : report.late_starts) late += "  fluid from rest: " + plan::in_words(start) + "\n";
   return (scene.title.empty() ? "untitled scene" : scene.title) + "\n  " + scene::by_axes(scene.domain.size, 1e6, 3) +
          " um, " + scene::by_axes(scene.domain.nodes) + " nodes, " +
-         counted(static_cast<double>(scene.cells.size()), "cell") + "; stages: " + listed(stages) + "\n  at most " +
+         counted(static_cast<double>(scene.placed().size()), "cell") +
+         (scene.fed > 0 ? ", and more that come in" : "") + "; stages: " + listed(stages) + "\n  at most " +
          counted(estimate.steps, "step") + ", about " + time_in_words(estimate.wall_s / (ranks * threads)) + " on " +
          workers(ranks, threads) + " (the machine has " + counted(processors, "processor") + "), " +
          size_in_words(estimate.output.bytes()) + " of output\n" + late + "  into " + folder.string() + "\n";

@@ -7,6 +7,7 @@
 
 #include "base/text.hpp"
 #include "constants.hpp"
+#include "feed.hpp"
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
 #include "numerics_problem.hpp"
@@ -248,7 +249,7 @@ OpenScene::OpenScene(json::Document document, Faults& faults) : document_(std::m
   Faults of_draft;
   draft_ = scene::read_scene(draft, of_draft);
   if (of_draft.empty()) shape::build_walls(*draft_, of_draft);
-  if (of_draft.empty()) of_draft.attempt([&] { shape::add_random_cells(*draft_); });
+  if (of_draft.empty()) of_draft.attempt([&] { shape::add_random_cells(*draft_), add_fed_cells(*draft_); });
   if (of_draft.empty()) return;
   document_ = *draft;  // whose reading says them
   draft_.reset();

@@ -337,7 +337,7 @@ template <int D>
 void for_each_cell(const scene::Scene& scene, double spacing,
                    const std::function<void(std::size_t, const core::Cells<D>&)>& function) {
   core::Cells<D> cell = without_cells<D>(scene, spacing);
-  for (std::size_t c = 0; c < scene.cells.size(); ++c) {
+  for (std::size_t c = 0; c < scene.placed().size(); ++c) {
     add_placed(cell, scene.cells[c], spacing);
     function(c, cell);
     cell.remove_cells();

@@ -66,6 +66,7 @@ auto Engine<D>::place_cells(observe::Observer& observer) -> Start {
     boxes.push_back(core::box_of<D>(cell, 0));
     observer.begin_with(cell);
   });
+  boxes.resize(scene.cells.size(), core::BoundingBox<D>::unknown());
   std::vector<int> there(scene.placed().size());
   std::iota(there.begin(), there.end(), 0);
   Start start = prepare(0, boxes, owners(boxes, there, owner_));

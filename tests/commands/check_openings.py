@@ -54,6 +54,21 @@ DUCT_STEP = changed(CHANNEL, domain={"size": ["6 um", "5 um", "4 um"], "nodes": 
                                      "z": WALLS, "obstacles": [{"box": {"lower": ["3 um", "0 um", "0 um"],
                                                                         "upper": ["6 um", "2 um", "4 um"]}}]},
                     stages__0__duration="3 ms", output__cells__seconds="0.5 ms")
+FED_LENGTH, FED_HEIGHT = 60 * UM, 16 * UM
+REPULSION = {"model": "repulsion", "parameters": {"strength": "1e-7 J/m2", "cutoff": "1 um"}}
+FED = changed(CHANNEL, domain={"size": ["60 um", "16 um"], "nodes": [120, 32], "y": WALLS,
+                               "x": ends({**VELOCITY, "cells": {"type": "rbc", "hematocrit": 0.2, "seed": 3}})},
+              numerics={"density_factor": 100, "area_correction": True}, cell_types={"rbc": RED_CELL},
+              cells=[{"type": "rbc", "at": ["30 um", "8 um"], "angle": "1 rad"}],
+              interactions=[{"between": ["rbc", other], **REPULSION} for other in ("rbc", "wall")],
+              stages__0__duration="0.15 s", output__cells__seconds="5 ms")
+CAPSULE = {"shape": {"sphere": {"radius": "1 um"}}, "triangles": 320, "interior_viscosity": "1.2 cP",
+           "membrane": [{"model": "neo-hookean", "parameters": {"shear_modulus": "1e-4 N/m"}}]}
+FED_TUBE = changed(TUBE, domain={"size": ["14 um", "5.5 um", "5.5 um"], "nodes": [56, 22, 22], "walls": {"tube": {"radius": "2.5 um"}},
+                                 "x": ends({**VELOCITY, "cells": {"type": "ball", "hematocrit": 0.1}})},
+                   numerics={"density_factor": 100, "area_correction": True}, cell_types={"ball": CAPSULE},
+                   interactions=[{"between": ["ball", other], **REPULSION} for other in ("ball", "wall")],
+                   stages__0__duration="16 ms", output__cells__seconds="1 ms")
 
 
 class Openings(unittest.TestCase):
@@ -189,6 +204,57 @@ class Openings(unittest.TestCase):
             self.assertEqual(process.wait(), -signal.SIGKILL)
             self.run_scene(scene, f"{name}-killed", "--resume")
             self.assertEqual(series.read_text(), (self.folder / name / "series.csv").read_text())
+
+    def traffic(self, name):
+        """Steps at which cells came and left, by their numbers, from the log."""
+        came, left = {}, {}
+        for line in (self.folder / name / "log.jsonl").read_text().splitlines():
+            entry = json.loads(line)
+            if entry["event"] in ("cell_came", "cell_left"):
+                to = came if entry["event"] == "cell_came" else left
+                self.assertNotIn(entry["cell"], to)
+                to[entry["cell"]] = entry["step"]
+        return came, left
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_cells_come_at_the_hematocrit_and_leave_whole(self):
+        rows = self.run_scene(FED, "fed")
+        came, left = self.traffic("fed")
+        last = rows[-1]
+        self.assertEqual(last["cells_in"], len(came))
+        self.assertEqual(last["cells_out"], len(left))
+        self.assertGreater(len(left), 5)
+        with open(self.folder / "fed/cells.csv") as table:
+            cells = list(csv.DictReader(table))
+        for row in rows:
+            there = [cell for cell in cells if int(cell["step"]) == row["step"]]
+            self.assertEqual(row["cells_in"] - row["cells_out"] + 1, row["cells_inside"])  # one was placed
+            self.assertEqual(row["cells_inside"], len(there))
+            self.assertEqual(len({cell["cell"] for cell in there}), len(there))
+            for cell in there:
+                self.assertTrue(0 < float(cell["x_m"]) < FED_LENGTH and float(cell["min_gap_m"]) > 0, cell)
+        self.assertEqual(sorted(came), list(range(1, 1 + len(came))))
+        self.assertTrue(all(step > came.get(cell, 0) for cell, step in left.items()))
+        # What came in makes up a fifth of what flowed in, to one cell.
+        area = float(next(cell for cell in cells if cell["cell"] == "1")["area_m2"])
+        self.assertAlmostEqual(len(came) * area / (0.2 * MEAN * FED_HEIGHT * last["time_s"]), 1, delta=1 / len(came))
+        ends_of_x = json.loads((self.folder / "fed/summary.json").read_text())["cell_traffic"]["stages"][0]["ends"]
+        self.assertAlmostEqual(ends_of_x[0]["discharge_hematocrit"] / 0.2, 1, delta=0.05)
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_the_same_bytes_where_cells_come_and_leave(self):
+        self.same_bytes(changed(FED, stages__0__duration="40 ms"), "fed")
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_cells_in_space_come_and_leave(self):
+        self.run_scene(FED_TUBE, "tube")
+        came, left = self.traffic("tube")
+        self.assertGreater(len(came), 3)
+        self.assertGreater(len(left), 0)
+        if not HAS_RANKS:
+            return
+        self.run_scene(FED_TUBE, "tube-ranks", ranks=2)
+        self.assertEqual(differences(self.folder / "tube", self.folder / "tube-ranks"), [])
 
     def test_plan_tells_inlet_and_outlet(self):
         for scene, open_area, speed in ((CHANNEL, HEIGHT, 1.5e-3), (TUBE, math.pi * RADIUS ** 2, 2e-3),

@@ -88,7 +88,7 @@ TEST_CASE("the developed flow of a duct solves Poisson's equation, and has the s
 }
 
 TEST_CASE("the developed flow of a duct has the flow rate of the series for ducts", "[flow]") {
-  const rouleau::scene::Domain domain{{1, 10, 24}, {4, 4, 4}, {true, false, false}};
+  const rouleau::scene::Domain domain{{1, 10, 24}, {4, 4, 4}, {}, {true, false, false}};
   const DuctFlow flow{10, 24, {}, 1};
   double rate = 0;
   constexpr int n = 400;

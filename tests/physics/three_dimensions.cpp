@@ -53,7 +53,7 @@ TEST_CASE("the flow rate of a square duct is that of the series, to second order
 }
 
 TEST_CASE("the series of ducts has the square's flow rate and goes over into that of a plane channel", "[flow]") {
-  rouleau::scene::Domain domain{{1, 1, 1}, {4, 4, 4}, {true, false, false}};
+  rouleau::scene::Domain domain{{1, 1, 1}, {4, 4, 4}, {}, {true, false, false}};
   CHECK(rouleau::scene::duct_share(domain) / 12 == Approx(0.0351443).epsilon(2e-6));
   domain.size[2] = 1e4;
   CHECK(rouleau::scene::duct_share(domain) == Approx(1).epsilon(1e-4));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "domain.hpp"
 
@@ -12,6 +13,14 @@ namespace rouleau::core {
 template <int D>
 struct BoundingBox {
   std::array<double, D> least, most;
+
+  /// Of no known place; not usable.
+  static BoundingBox unknown() {
+    BoundingBox box;
+    box.least.fill(std::numeric_limits<double>::quiet_NaN());
+    box.most = box.least;
+    return box;
+  }
 
   /// False for the positions of a simulation that has just blown up (not finite, or absurdly large). The checks of the
   /// run will report them; until then nothing may crash or hang on them.

@@ -198,9 +198,7 @@ std::vector<BoundingBox<D>> boxes_of(const CellNodes& nodes) {
 /// The same; of cells that this rank does not know, no numbers.
 template <int D>
 std::vector<BoundingBox<D>> boxes_of_known(const CellNodes& nodes) {
-  BoundingBox<D> none;
-  none.least.fill(NAN), none.most.fill(NAN);
-  std::vector<BoundingBox<D>> boxes(nodes.cells.size(), none);
+  std::vector<BoundingBox<D>> boxes(nodes.cells.size(), BoundingBox<D>::unknown());
   for (const int cell : nodes.known_cells()) boxes[cell] = box_of<D>(nodes, cell);
   return boxes;
 }

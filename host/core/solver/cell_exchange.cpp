@@ -18,9 +18,7 @@ CellExchange<D>::CellExchange(GhostCells<D> ghosts, bool velocities)
 
 template <int D>
 std::vector<BoundingBox<D>> CellExchange<D>::boxes_of_all(const Cells& cells) const {
-  BoundingBox<D> none;
-  none.least.fill(NAN), none.most.fill(NAN);
-  std::vector<BoundingBox<D>> mine, all(cells.cells.size(), none);
+  std::vector<BoundingBox<D>> mine, all(cells.cells.size(), BoundingBox<D>::unknown());
   for (int c = 0; c < cells.cell_count(); ++c) {
     if (ghosts_.owns(c)) mine.push_back(box_of<D>(cells, c));
   }

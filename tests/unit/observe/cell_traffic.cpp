@@ -101,7 +101,7 @@ TEST_CASE("a traffic that was kept goes on as if it had not been") {
 
 TEST_CASE("series.csv has columns of cells' traffic where cells may come or leave, and nowhere else") {
   const Table& series = table("series");
-  const auto without = series.columns(2), with = series.columns(2, true);
+  const auto without = series.columns({2, true}), with = series.columns({2, true, true});
   REQUIRE(with.size() == without.size() + 3);
   CHECK(std::equal(without.begin(), without.end(), with.begin()));
   CHECK(std::vector(with.end() - 3, with.end()) == std::vector<std::string>{"cells_in", "cells_inside", "cells_out"});
