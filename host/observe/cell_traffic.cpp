@@ -34,8 +34,7 @@ RunKind kind_of(const scene::Scene& scene) {
 
 void CellTraffic::begin_stage(const std::string& name, double time) {
   stages_.push_back({name});
-  flows_ = false;
-  last_time_ = time;
+  if (!flows_) last_time_ = time;
 }
 
 auto CellTraffic::stage(double time) -> StageTraffic& {

@@ -7,7 +7,6 @@
 
 #include "base/text.hpp"
 #include "core/contact/wall_gap.hpp"
-#include "core/coupling/kernel.hpp"
 #include "core/fluid/openings/section.hpp"
 #include "placed_cells.hpp"
 #include "scene/lattice.hpp"
@@ -18,7 +17,6 @@ namespace rouleau::plan {
 namespace {
 
 constexpr double kept_apart = 2;    // spacings, from other cells and from walls
-constexpr double room_to_move = 3;  // spacings, beyond the reach of a stencil: in some steps and a half
 constexpr int places_at_once = 32;  // at a time
 
 double duration_of(const scene::Scene& scene) {
@@ -27,9 +25,8 @@ double duration_of(const scene::Scene& scene) {
   return sum;
 }
 
-/// How many cells come in each second, where the inlet has so many nodes.
-double arrivals(const scene::Scene& scene, const scene::Feed& feed, double nodes) {
-  const double area = nodes * std::pow(scene::lattice_spacing(scene), scene.domain.dimension() - 1);
+/// How many cells come in each second through an inlet of this area, m2, or m in two dimensions.
+double arrivals(const scene::Scene& scene, const scene::Feed& feed, double area) {
   return feed.hematocrit * *scene.domain.openings->front().mean_velocity * area /
          shape::enclosed_by(scene.cell_types[feed.type]);
 }
@@ -39,8 +36,8 @@ double arrivals(const scene::Scene& scene, const scene::Feed& feed, double nodes
 void add_fed_cells(scene::Scene& scene) {
   if (scene.domain.feed() == nullptr) return;
   scene::Feed& feed = *scene.domain.openings->front().cells;
-  const double nodes = scene.domain.node_count() / scene.domain.nodes[0];  // all of the end is open at most
-  const double most = std::ceil(arrivals(scene, feed, nodes) * duration_of(scene)) + 1;
+  const double area = scene.domain.size.product() / scene.domain.size.x();  // all of the end is open at most
+  const double most = std::ceil(arrivals(scene, feed, area) * duration_of(scene)) + 1;
   const scene::SceneFields fields(*scene.document);
   if (!(most <= static_cast<double>(scene::most_cells))) {
     fields.refuse(feed.pointer, "about " + number(most, 3) + " cells would come in during the stages; at most " +
@@ -65,22 +62,24 @@ std::span<const scene::CellPlacement> cells_at_once(const scene::Scene& scene) {
 }
 
 template <int D>
-Inflow<D>::Inflow(const scene::Scene& scene, const core::BasicSolverSetup<D>& setup)
-    : feed_(scene.domain.feed()),
-      none_(without_cells<D>(scene, scene::lattice_spacing(scene))),
-      domain_(scene::lattice_domain<D>(scene)),
+Inflow<D>::Inflow(const Plan& plan, int stage, const core::BasicSolverSetup<D>& setup)
+    : feed_(plan.scene->domain.feed()),
+      none_(without_cells<D>(*plan.scene, scene::lattice_spacing(*plan.scene))),
+      domain_(scene::lattice_domain<D>(*plan.scene)),
       region_(setup.region),
-      origin_(0 * scene.domain.size),
-      spacing_(scene::lattice_spacing(scene)),
-      margin_(core::stencil_above(setup.kernel) + room_to_move) {
+      origin_(0 * plan.scene->domain.size),
+      spacing_(scene::lattice_spacing(*plan.scene)) {
   if (feed_ == nullptr) return;
   const core::Section section = core::section_at(domain_, setup.solid.get(), setup.walls, 0);
+  const double mean = setup.openings->front().value;
   double sum = 0, nodes = 0;
   for (std::size_t row = 0; row < section.driven.size(); ++row) {
-    flux_.push_back(sum += std::max(0.0, section.velocity(row, 1)));
+    flux_.push_back(sum += std::max(0.0, section.velocity(row, mean)));
     nodes += section.driven[row] != 0 ? 1 : 0;
   }
-  cells_per_second_ = arrivals(scene, *feed_, nodes);
+  // The mean is that over the nodes, and gives the flow through the true section.
+  const double flow = mean * nodes * std::pow(spacing_, D) / plan.stages[stage].units.time;
+  cells_per_second_ = feed_->hematocrit * flow / shape::enclosed_by(plan.scene->cell_types[feed_->type]);
 }
 
 template <int D>
@@ -128,6 +127,9 @@ core::Vec<D> Inflow<D>::way_in(const core::BoundingBox<D>& box, shape::RandomNum
 template <int D>
 bool Inflow<D>::fits(const core::Cells<D>& cell) const {
   const core::BoundingBox<D> box = core::box_of<D>(cell, 0);
+  for (int k = 1; k < D; ++k) {
+    if (domain_.periodic[k] && !(box.most[k] - box.least[k] + kept_apart < domain_.period(k))) return false;
+  }
   if (!(box.least[0] >= lowest() && box.most[0] < highest())) return false;
   return !(core::wall_gap(cell, cell.cells[0], domain_, region_.get()) < kept_apart);
 }
@@ -136,20 +138,42 @@ template <int D>
 bool Inflow<D>::is_apart(const core::Cells<D>& cell, const core::Cells<D>& others, int other) const {
   const core::BoundingBox<D> box = core::box_of<D>(cell, 0), its = core::box_of<D>(others, other);
   if (core::distance_along_axes(box, its, domain_) > kept_apart) return true;
-  core::Vec<D> move;  // to the image of the other one that is nearest
+  core::Vec<D> nearest;  // the image of the other one
   for (int k = 0; k < D; ++k) {
     const double period = domain_.period(k), between = box.least[k] + box.most[k] - its.least[k] - its.most[k];
-    move[k] = period > 0 ? period * std::round(between / 2 / period) : 0;
+    nearest[k] = period > 0 ? period * std::round(between / 2 / period) : 0;
   }
+  // Along a short period the images on both sides of it are near, too.
+  int images = 1;
+  for (int k = 1; k < D; ++k) images *= domain_.periodic[k] ? 3 : 1;
+  for (int image = 0; image < images; ++image) {
+    core::Vec<D> move = nearest;
+    for (int k = 1, rest = image; k < D; ++k) {
+      if (!domain_.periodic[k]) continue;
+      move[k] += (rest % 3 - 1) * domain_.period(k);
+      rest /= 3;
+    }
+    if (!is_apart(cell, others, other, move)) return false;
+  }
+  return true;
+}
+
+template <int D>
+bool Inflow<D>::is_apart(const core::Cells<D>& cell, const core::Cells<D>& others, int other,
+                         const core::Vec<D>& move) const {
   const auto node = [](const core::Cells<D>& of, int i) {
     core::Vec<D> place;
     for (int k = 0; k < D; ++k) place[k] = of.position[k][i];
     return place;
   };
+  const core::BoundingBox<D> box = core::box_of<D>(cell, 0);
   const core::CellRange& range = others.cells[other];
   for (int i = range.first; i < range.end(); ++i) {
     const core::Vec<D> place = node(others, i) + move;
-    for (int j = 0; j < cell.node_count(); ++j) {
+    bool near = true;
+    for (int k = 0; k < D; ++k)
+      near = near && place[k] > box.least[k] - kept_apart && place[k] < box.most[k] + kept_apart;
+    for (int j = 0; near && j < cell.node_count(); ++j) {
       if ((node(cell, j) - place).squaredNorm() < kept_apart * kept_apart) return false;
     }
   }

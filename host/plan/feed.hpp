@@ -8,7 +8,8 @@
 #include "core/membrane/membranes.hpp"
 #include "core/solver/solver_setup.hpp"
 #include "core/surface/surfaces.hpp"
-#include "scene/scene.hpp"
+#include "plan.hpp"
+#include "scene/lattice.hpp"
 #include "shape/rigid_body.hpp"
 
 namespace rouleau::plan {
@@ -21,19 +22,20 @@ void add_fed_cells(scene::Scene& scene);
 /// hematocrit.
 std::span<const scene::CellPlacement> cells_at_once(const scene::Scene& scene);
 
-/// Where cells come in, and how close to the openings they may be. They are mixed well before they come: a cell's
-/// middle crosses the inlet anywhere, as often as the developed flow brings fluid there, at any angle.
+/// Where cells come in, and how close to the openings they may be. They come as from a well mixed reservoir: a place is
+/// drawn as often as the developed flow of the inlet brings fluid there, and any angle; it is drawn again where the cell
+/// would touch a wall or another cell.
 template <int D>
 class Inflow {
  public:
-  /// `scene` has openings, and outlives it; `setup` of any of its stages.
-  Inflow(const scene::Scene& scene, const core::BasicSolverSetup<D>& setup);
+  /// The plan's scene has openings, and outlives it; `setup` of this stage.
+  Inflow(const Plan& plan, int stage, const core::BasicSolverSetup<D>& setup);
 
   /// How many cells have come in after so long, s: their volume is the hematocrit's share of all that came in.
   [[nodiscard]] int due(double time) const;
-  /// No stencil of a node that lies within these reaches beyond an opening, not after the next steps either; spacings.
-  [[nodiscard]] double lowest() const { return margin_ - 0.5; }
-  [[nodiscard]] double highest() const { return domain_.size[0] - 0.5 - margin_; }
+  /// Cells are wholly between these two, in spacings, when they come; a cell that has come nearer to an opening goes.
+  [[nodiscard]] double lowest() const { return scene::kept_from_openings - 0.5; }
+  [[nodiscard]] double highest() const { return domain_.size[0] - 0.5 - scene::kept_from_openings; }
 
   /// Places for cell `cell` to appear at `step`, in the order in which they are to be tried: its nodes, alone. They
   /// follow from the scene's seed, the cell and the step.
@@ -45,6 +47,8 @@ class Inflow {
   [[nodiscard]] core::Vec<D> way_in(const core::BoundingBox<D>& box, shape::RandomNumbers& numbers) const;
   /// Whether it keeps its distance from walls.
   [[nodiscard]] bool fits(const core::Cells<D>& cell) const;
+  [[nodiscard]] bool is_apart(const core::Cells<D>& cell, const core::Cells<D>& others, int other,
+                              const core::Vec<D>& move) const;
 
   const scene::Feed* feed_;  ///< null: no cells come in
   core::Cells<D> none_;      ///< but for the cell types
@@ -52,7 +56,6 @@ class Inflow {
   core::RegionPointer<D> region_;
   scene::Vector origin_;
   double spacing_;               ///< m
-  double margin_;                ///< spacings
   double cells_per_second_ = 0;  ///< of the feed
   std::vector<double> flux_;     ///< sum up to and with each row of the inlet
 };

@@ -139,12 +139,13 @@ class PlacementChecker {
                          ", more than the periodic length of the domain, " + micrometres(domain_.period(k)) +
                          "; make the domain longer.");
       }
-      const double below = -0.5 - box.least[k], above = box.most[k] - (domain_.size[k] - 0.5);
+      const double kept = k == 0 ? scene::kept_from_openings : 0;
+      const double below = kept - 0.5 - box.least[k], above = box.most[k] - (domain_.size[k] - 0.5 - kept);
       if (below < 0 && above < 0) continue;
       const double by = below < 0 ? above : below;
       if (k == 0)
-        refuse(cell, std::string(" sticks out of the ") + (below < 0 ? "outlet" : "inlet") + " by " + micrometres(by) +
-                         "; move it into the domain.");
+        refuse(cell, std::string(" is too near the ") + (below < 0 ? "outlet" : "inlet") + " by " + micrometres(by) +
+                         ": cells keep " + micrometres(kept) + ", six lattice spacings, from it; move it.");
       refuse(cell, std::string(" sticks through the ") + (below < 0 ? "upper" : "lower") + " wall across " +
                        scene::axis_names[k] + " by " + micrometres(by) + "; move it away from the wall.");
     }
@@ -265,7 +266,7 @@ void require_room(const scene::Scene& scene) {
     return number(content * words.content_in_unit) + " " + words.content_unit;
   };
   throw Error(Cause::bad_input, scene.place("/cells"),
-              "the " + std::to_string(scene.cells.size()) + " cells cover " + measured(covered) +
+              "the " + std::to_string(scene.placed().size()) + " cells cover " + measured(covered) +
                   " and so overlap: the domain has " + measured(there),
               {"take fewer cells, or a larger domain"});
 }

@@ -95,7 +95,7 @@ std::vector<PlannedPass> planned_passes(const Plan& plan) {
   if (plan.has_wall_interactions) parties.emplace_back("between cells and walls");
   if (plan.has_self_interactions) parties.emplace_back("within a membrane");
   const std::map<std::string, std::string> reasons{
-      {"membrane", std::to_string(scene.cells.size()) + " cells resist deformation" +
+      {"membrane", std::to_string(cells_at_once(scene).size()) + " cells resist deformation" +
                        (plan.semi_implicit ? "; semi-implicit step" : "")},
       {"interaction", "an active potential acts " + listed(parties)},
       {"corrections", slip ? (area ? "membranes neither slip nor leak" : "membranes do not slip")

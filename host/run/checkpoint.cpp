@@ -9,6 +9,7 @@
 
 #include "checkpoint_match.hpp"
 #include "core/solver/in_order.hpp"
+#include "former_state.hpp"
 
 namespace rouleau::run {
 
@@ -330,10 +331,14 @@ Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, c
                  const TakePart<D>& take_part) {
   try {
     const Json saved = reader->state();
-    saved.at("run").get_to(state);
+    Json run = saved.at("run");
+    complete_former_state<D>(run, plan);
+    run.get_to(state);
     if (plan.scene->domain.openings) saved.at("traffic").get_to(state.traffic);
-    require(state.fits(plan, cells), *reader, "counts of another scene");
+    if (plan.scene->domain.openings)
+      require(state.traffic.fits(cells.cells.size()), *reader, "cells that are not there");
     if (take_part) take_part(read_boxes<D>(*reader, cells));
+    require(state.fits(plan, cells), *reader, "counts of another scene");
     restore_cells(*reader, saved.at("membranes"), cells);
     cells.forget(cells.unknown_nodes());
     core::SolverState solver{

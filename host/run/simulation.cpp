@@ -148,6 +148,7 @@ class Simulation final : StepHooks {
       traffic_.found() ? change_cells() : cut_again();
     }
     take_time();
+    cells_due_ = traffic_.due_by_now();
     state_.end_stage(setting(), stage_->ended);
     log("stage_ended", {{"name", setting().stage->name},
                         {"steps", state_.stage_step},
@@ -178,7 +179,9 @@ class Simulation final : StepHooks {
   /// All ranks, between two steps, whose messages have been taken: cells come and go.
   void change_cells() {
     const auto change = traffic_.take();
-    for (const int c : change.gone) log("cell_left", {{"step", state_.steps}, {"cell", c}});
+    for (const auto& departure : change.gone)
+      log("cell_left",
+          {{"step", state_.steps}, {"cell", departure.cell}, {"end", departure.end == 0 ? "lower" : "upper"}});
     for (const auto& arrival : change.come) log("cell_came", {{"step", state_.steps}, {"cell", arrival.cell}});
   }
 
@@ -344,7 +347,8 @@ class Simulation final : StepHooks {
       s.peak_rss_bytes += of_rank.front();
     s.checkpoint_step = checkpoints_.kept();
     if (observe::has_traffic(scene()))
-      s.cell_traffic = state_.traffic.cells.summary(scene().domain.in_plane() ? "m2" : "m3");
+      s.cell_traffic = state_.traffic.cells.summary(scene().domain.in_plane() ? "m2" : "m3"),
+      s.cell_traffic["cells_due"] = cells_due_;
     s.area_leakage_max = observe::Observer::area_leakage(engine_.cells(), ranks());
   }
 
@@ -366,6 +370,7 @@ class Simulation final : StepHooks {
   Summary summary_;
   Stepper stepper_{*this};
   Balance balance_;
+  int cells_due_ = 0;           ///< that should have come in by the end of the last stage
   std::optional<Stage> stage_;  ///< the present one
   Clock::time_point clock_;
 };

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/error.hpp"
 #include "shape/extent.hpp"
 
 namespace rouleau::run {
@@ -13,6 +14,7 @@ namespace rouleau::run {
 namespace {
 
 constexpr int lower_end = 0, upper_end = 1;
+constexpr int most_looks_in_vain = 100;
 
 }  // namespace
 
@@ -29,7 +31,8 @@ Traffic<D>::Traffic(const plan::Plan& plan, Engine<D>& engine, RunState& state)
 
 template <int D>
 const plan::Inflow<D>& Traffic<D>::inflow() {
-  if (!inflow_) inflow_.emplace(*plan_.scene, engine_.solver().setup());
+  if (!inflow_ || of_stage_ != state_.stage) inflow_.emplace(plan_, state_.stage, engine_.solver().setup());
+  of_stage_ = state_.stage;
   return *inflow_;
 }
 
@@ -38,6 +41,7 @@ bool Traffic<D>::due() {
   TrafficState& traffic = state_.traffic;
   if (!is_open() || state_.steps < traffic.next) return false;
   traffic.next = state_.steps + steps_to_next();
+  change_ = {};
   find_gone();
   find_come(state_.time_at(plan_.stages[state_.stage]));
   return change_.any();
@@ -45,14 +49,18 @@ bool Traffic<D>::due() {
 
 template <int D>
 void Traffic<D>::find_gone() {
+  constexpr double below_arrivals = 1.5;  // spacings: what has just come does not go
   std::vector<int> mine;
   const auto& cells = engine_.cells();
   for (const int c : cells.own_cells()) {
-    if (core::box_of<D>(cells, c).most[0] > inflow().highest()) mine.push_back(c);
+    const core::BoundingBox<D> box = core::box_of<D>(cells, c);
+    const bool at_upper = box.most[0] > inflow().highest(),
+               at_lower = box.least[0] < inflow().lowest() - below_arrivals;
+    if (at_upper || at_lower) mine.push_back(at_upper ? c : ~c);
   }
   for (const std::vector<int>& of_rank : core::all_of(engine_.ranks(), std::move(mine)))
-    change_.gone.insert(change_.gone.end(), of_rank.begin(), of_rank.end());
-  std::sort(change_.gone.begin(), change_.gone.end());
+    for (const int c : of_rank) change_.gone.push_back({c < 0 ? ~c : c, c < 0 ? lower_end : upper_end});
+  std::sort(change_.gone.begin(), change_.gone.end(), [](auto& a, auto& b) { return a.cell < b.cell; });
 }
 
 template <int D>
@@ -69,6 +77,14 @@ void Traffic<D>::find_come(double time) {
 template <int D>
 auto Traffic<D>::free_place(int cell) -> std::optional<typename Engine<D>::Cells> {
   auto places = inflow().places(cell, state_.steps);
+  looks_in_vain_ = places.empty() ? looks_in_vain_ + 1 : 0;
+  if (looks_in_vain_ > most_looks_in_vain) {
+    const scene::Scene& scene = *plan_.scene;
+    throw Error(
+        Cause::bad_input, scene.place(scene.domain.feed()->pointer),
+        "no place and no angle was found behind the inlet at which such a cell keeps two lattice spacings from walls",
+        {"take a wider inlet, a smaller cell, or a finer lattice"});
+  }
   const auto& cells = engine_.cells();
   std::vector<char> taken(places.size(), 0);
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -87,11 +103,13 @@ auto Traffic<D>::free_place(int cell) -> std::optional<typename Engine<D>::Cells
 template <int D>
 auto Traffic<D>::take() -> Change {
   Change change = std::exchange(change_, {});
-  engine_.change_cells(change.gone, change.come);
+  std::vector<int> gone;
+  for (const Departure& departure : change.gone) gone.push_back(departure.cell);
+  engine_.change_cells(gone, change.come);
   TrafficState& traffic = state_.traffic;
-  std::erase_if(traffic.there, [&](int c) { return std::binary_search(change.gone.begin(), change.gone.end(), c); });
+  std::erase_if(traffic.there, [&](int c) { return std::binary_search(gone.begin(), gone.end(), c); });
   const double time = state_.time_at(plan_.stages[state_.stage]);
-  for (const int c : change.gone) traffic.cells.left(c, time, upper_end);
+  for (const Departure& departure : change.gone) traffic.cells.left(departure.cell, time, departure.end);
   for (const Arrival& arrival : change.come) {
     traffic.there.push_back(arrival.cell);
     state_.observer.begin_with(arrival.nodes, 0, arrival.cell);

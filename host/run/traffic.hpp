@@ -12,13 +12,16 @@
 namespace rouleau::run {
 
 /// Who comes and who goes, between two steps: a cell that is due comes as soon as there is room behind the inlet; a
-/// cell that has come near the outlet goes. All ranks ask together, and get the same.
+/// cell that has come near an opening goes. All ranks ask together, and get the same.
 template <int D>
 class Traffic {
  public:
   using Arrival = typename Engine<D>::Arrival;
+  struct Departure {
+    int cell, end;  ///< through the lower end of x, 0, or the upper one, 1
+  };
   struct Change {
-    std::vector<int> gone;
+    std::vector<Departure> gone;
     std::vector<Arrival> come;
     [[nodiscard]] bool any() const { return !gone.empty() || !come.empty(); }
   };
@@ -30,6 +33,8 @@ class Traffic {
   [[nodiscard]] bool due();
   /// Whether that was so, and is still to be done.
   [[nodiscard]] bool found() const { return change_.any(); }
+  /// How many have come in by now, or wait for room.
+  [[nodiscard]] int due_by_now() { return is_open() ? inflow().due(state_.time_at(plan_.stages[state_.stage])) : 0; }
   /// What due() has found is done.
   Change take();
   /// The step of the stage at which it looks again.
@@ -49,6 +54,8 @@ class Traffic {
   RunState& state_;
   std::vector<double> content_;            ///< m3, or m2, of a cell of each type
   std::optional<plan::Inflow<D>> inflow_;  ///< made when first asked for
+  int of_stage_ = 0;
+  int looks_in_vain_ = 0;  ///< one after another, in which no place was tried: all were too near a wall
   Change change_;
 };
 

@@ -14,6 +14,10 @@ namespace rouleau::scene {
 /// Numbers of nodes along each side: two, or three.
 using LatticeSize = std::vector<int>;
 
+/// Cells keep so many spacings from openings when they are placed or come in, so that no kernel reaches beyond one, not
+/// after the next steps either.
+inline constexpr double kept_from_openings = 6;
+
 /// Spacing of the lattice, m.
 double lattice_spacing(const Scene& scene);
 

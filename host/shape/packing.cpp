@@ -12,6 +12,7 @@
 #include "outline.hpp"
 #include "rigid_outline.hpp"
 #include "rigid_surface.hpp"
+#include "scene/lattice.hpp"
 #include "walls.hpp"
 
 namespace rouleau::shape {
@@ -66,6 +67,10 @@ class Packer {
          const std::vector<scene::RandomPacking>& packings, std::vector<scene::CellPlacement>& cells, double unit)
       : domain_(domain), packings_(packings), cells_(cells), unit_(unit), numbers_(make_numbers(packings)) {
     for (int k = 0; k < D; ++k) box_[k] = {0, domain.size[k] / unit, domain.periodic[k]};
+    if (domain.is_open()) {
+      const double kept = scene::kept_from_openings * domain.size.x() / domain.nodes[0] / unit;
+      box_[0] = {kept, domain.size.x() / unit - kept, false};
+    }
     double least_gap = packings.front().gap;
     for (const scene::RandomPacking& packing : packings) least_gap = std::min(least_gap, packing.gap);
     for (const scene::CellPlacement& cell : cells) {

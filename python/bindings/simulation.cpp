@@ -62,6 +62,10 @@ class SimulationOf final : public Simulation, run::StepHooks {
     remember();
     whole_ = false;
     stepper_.compute_forces(engine_.solver().passes(), state_.stage_step);
+    if (traffic_.found()) {
+      change_cells();
+      stepper_.compute_forces(engine_.solver().passes(), state_.stage_step);
+    }
     whole_ = true;
   }
 

@@ -108,6 +108,13 @@ struct CellNodes {
   std::vector<int> known;             ///< the cells that it knows, if it has parts
 
   [[nodiscard]] int node_count() const { return static_cast<int>(position[0].size()); }
+  /// Of the cells that this rank knows.
+  [[nodiscard]] int known_node_count() const {
+    if (part.empty()) return node_count();
+    int nodes = 0;
+    for (const int c : known) nodes += cells[c].count;
+    return nodes;
+  }
   [[nodiscard]] bool owns(int cell) const { return part.empty() || part[cell].owned; }
   [[nodiscard]] bool knows(int cell) const { return part.empty() || part[cell].known; }
   [[nodiscard]] bool reaches(int cell) const { return part.empty() || part[cell].reaching; }

@@ -203,7 +203,7 @@ RowBands Solver<T, Set>::bands() const {
   // ten of the lattice are active for one of a membrane.
   constexpr int cache = 1 << 19, active_per_node = 10;
   const int rows = row_count(setup_.domain.block), columns = setup_.domain.block.size(0);
-  const int active = std::clamp(active_per_node * cells_.node_count() / rows, 1, columns);  // of a row
+  const int active = std::clamp(active_per_node * cells_.known_node_count() / rows, 1, columns);  // of a row
   const int height = std::max(8, cache / (active * static_cast<int>(dimension * sizeof(T))));
   const EndRows ends = fluid_.end_rows();
   return {.rows = rows, .height = height, .upwards = fluid_.sweeps_up(), .below = ends.below, .above = ends.above};
