@@ -42,7 +42,7 @@ std::vector<int> Engine<D>::present() const {
 template <int D>
 std::vector<int> Engine<D>::owners(const Boxes& boxes, const std::vector<int>& there,
                                    const std::vector<int>& given) const {
-  if (!plan_.scene->domain.openings) return given;
+  if (!ranks_.several() || !plan_.scene->domain.openings) return given;
   std::vector<int> all(boxes.size(), core::GhostCells<D>::nobody);
   for (const int c : there) {
     all[c] =

@@ -304,7 +304,7 @@ class Openings(unittest.TestCase):
                  "no way from the inlet to the outlet"),
                 (changed(CHANNEL, domain__obstacles=[{"box": {"lower": ["0 um", "0 um"], "upper": ["9 um", "10 um"]}}]),
                  "no way from the inlet to the outlet"),
-                (changed(fed, cells=[{"type": "rbc", "at": ["2 um", "5 um"]}]), "sticks out of the inlet")):
+                (changed(fed, cells=[{"type": "rbc", "at": ["2 um", "5 um"]}]), "too near the inlet")):
             with self.subTest(words=words):
                 self.assertIn(words, self.refusal(scene))
 
