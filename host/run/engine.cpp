@@ -169,6 +169,7 @@ void Engine<D>::cut_again(int stage, long stage_step, const std::vector<double>&
                                         return core::rearrange(before, *blocks, values);
                                       },
                                   .walls_have_acted = fluid.walls_have_acted(),
+                                  .links = fluid.link_memory(),
                                   .steps = stage_step};
   if (const auto& control = solver_->flow_control()) start.state->flow_control = control->state();
   if (start.part) start.state->viscosity = solver_->cell_tasks()->pass_on(*start.part);

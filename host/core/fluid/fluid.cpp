@@ -260,6 +260,34 @@ std::array<EndFlow, 2> Fluid<T, Set>::end_flows() const {
 }
 
 template <class T, class Set>
+LinkMemory Fluid<T, Set>::link_memory() const {
+  std::vector<std::array<double, 2>> links;  // place and number
+  for (int i = 0; state_.links && i < rows().end; ++i) {
+    state_.links->for_links(i, [&](int x, int q, double left, bool) {
+      links.push_back({state_.place_of_link(i, x, q), left});
+    });
+  }
+  std::vector<std::array<double, 2>> all;
+  for (const auto& of_rank : all_of(ranks_, std::move(links))) all.insert(all.end(), of_rank.begin(), of_rank.end());
+  std::sort(all.begin(), all.end());
+  LinkMemory memory;
+  for (const auto& [place, left] : all) memory.place.push_back(place), memory.left.push_back(left);
+  return memory;
+}
+
+template <class T, class Set>
+void Fluid<T, Set>::recall_links(const LinkMemory& memory) {
+  for (int i = 0; state_.links && i < rows().end; ++i) {
+    state_.links->recall(i, [&](int x, int q, double guess) {
+      const double place = state_.place_of_link(i, x, q);
+      const auto found = std::lower_bound(memory.place.begin(), memory.place.end(), place);
+      const bool known = found != memory.place.end() && *found == place;
+      return known ? memory.left[static_cast<std::size_t>(found - memory.place.begin())] : guess;
+    });
+  }
+}
+
+template <class T, class Set>
 std::vector<double> Fluid<T, Set>::row_velocities_without_membranes() const {
   return core::row_velocities_without_membranes(state_, ranks_);
 }

@@ -52,6 +52,14 @@ struct FluidState {
   [[nodiscard]] int nx() const { return setting.domain.block.size(0); }
   [[nodiscard]] std::size_t bytes() const;
   /// 1/tau of the fluid at a row of the block, cells aside.
+  /// LinkMemory::place of a link of row i.
+  [[nodiscard]] double place_of_link(int i, int x, int q) const {
+    const auto row = lattice.row(i);
+    double node = 0;
+    for (int k = dimension - 1; k >= 0; --k)
+      node = node * setting.domain.size[k] + setting.domain.block.begin[k] + (k > 0 ? row[std::max(k - 1, 0)] : x);
+    return node * velocity_count + q;
+  }
   [[nodiscard]] double rate_of_row(const Row& row) const {
     return setting.viscosity_of_rows.empty() ? setting.relaxation_rate : rate_of_height[row[0]];
   }

@@ -59,6 +59,11 @@ class SolidLinks {
       function(link.x, link.q, static_cast<double>(link.left), link.plane);
     }
   }
+  /// What has left along each link of row i in the last step is left(x, q, what there is), whatever comes back.
+  template <class Left>
+  void recall(int i, Left left) {
+    for_row(i, [&](Link& link) { link.left = static_cast<T>(left(link.x, link.q, static_cast<double>(link.left))); });
+  }
   [[nodiscard]] std::size_t bytes() const { return links_.size() * sizeof(Link); }
 
  private:

@@ -21,6 +21,7 @@ struct SolverState {
   /// that they need not all be in memory.
   std::function<std::vector<double>(int q)> populations;
   bool walls_have_acted = false;
+  LinkMemory links = {};  ///< without solid nodes none
   /// Taken since the setup's start: what oscillates goes by them.
   long steps = 0;
   /// Where a mean velocity is kept.

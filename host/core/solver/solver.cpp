@@ -260,6 +260,7 @@ void Solver<T, Set>::start(SolverState state) {
     fluid_.set_drive(setup_.walls, state.flow_control->force);
   }
   fluid_.restore(state.populations, state.walls_have_acted);
+  fluid_.recall_links(state.links);
   if (cell_tasks_) cell_tasks_->restore(std::move(state.viscosity));
 }
 
