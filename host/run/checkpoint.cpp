@@ -22,7 +22,7 @@ std::string state_name(std::size_t k) { return "/membranes/state/" + std::to_str
 
 constexpr std::array places{"/membranes/x", "/membranes/y", "/membranes/z"};
 constexpr std::array velocities{"/membranes/velocity_x", "/membranes/velocity_y", "/membranes/velocity_z"};
-constexpr const char *link_places = "/links/place", *link_lefts = "/links/left";
+constexpr const char *link_places = "/links/place", *link_lefts = "/links/left", *link_aways = "/links/away";
 constexpr std::array indicator_places{"/indicator/x", "/indicator/y", "/indicator/z"};
 
 /// Arrays of the cells that have a value for each node, or for each cell.
@@ -232,7 +232,8 @@ Json save(files::CheckpointWriter* writer, core::AnySolver<D>& solver) {
   }
   const core::LinkMemory links = fluid.link_memory();
   if (writer != nullptr && !links.place.empty()) {
-    for (const auto& [path, values] : {std::pair{link_places, &links.place}, std::pair{link_lefts, &links.left}}) {
+    for (const auto& [path, values] : {std::pair{link_places, &links.place}, std::pair{link_lefts, &links.left},
+                                       std::pair{link_aways, &links.away}}) {
       writer->begin_array(path, values->size());
       writer->append(*values);
     }
@@ -358,8 +359,10 @@ Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, c
         .flow_control = {},
         .viscosity = {}};
     if (saved.at("solver").value("links", 0) > 0)  // former versions took what came back for what had left
-      solver.links = {reader->array(link_places), reader->array(link_lefts)};
-    require(solver.links.place.size() == solver.links.left.size(), *reader, "links without what has left along them");
+      solver.links = {reader->array(link_places), reader->array(link_lefts), reader->array(link_aways)};
+    require(
+        solver.links.place.size() == solver.links.left.size() && solver.links.left.size() == solver.links.away.size(),
+        *reader, "links without what has left along them");
     if (const Json& of_solver = saved.at("solver"); of_solver.contains("flow_control")) {
       const Json& control = of_solver.at("flow_control");
       solver.flow_control = core::FlowControl::State{.force = control.at("force"), .last = {}};

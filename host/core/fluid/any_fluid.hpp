@@ -36,10 +36,10 @@ struct FluidSetting {
   Openings openings = {};  ///< of a domain that is not periodic along x
 };
 
-/// A number for each link to a solid node, by its place: of the node in the whole lattice, times the number of
+/// Numbers of each link to a solid node, by its place: of the node in the whole lattice, times the number of
 /// velocities, plus the link's. Places rise.
 struct LinkMemory {
-  std::vector<double> place, left;
+  std::vector<double> place, left, away;  ///< SolidLinks::Last
 };
 
 /// Moments of one node before collision.
@@ -97,8 +97,8 @@ class AnyFluid {
     return {(last_walls_.lower + setting_.walls.lower) / 2, (last_walls_.upper + setting_.walls.upper) / 2};
   }
   /// Whether the walls have exchanged momentum with this state of the fluid (wall_forces).
-  /// What has left along the links to solid nodes in the last step, of all blocks: all ranks together, and all get the
-  /// same. What comes back does not tell it, and walls of any shape get both.
+  /// What the last step left along the links to solid nodes, of all blocks: all ranks together, and all get the same.
+  /// What comes back does not tell it, and walls of any shape get both.
   [[nodiscard]] virtual LinkMemory link_memory() const = 0;
   virtual void recall_links(const LinkMemory& memory) = 0;
   [[nodiscard]] bool walls_have_acted() const { return walls_have_acted_; }

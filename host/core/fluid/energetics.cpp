@@ -292,7 +292,7 @@ void EnergySum<T, Set>::add(int i) {
     });
     // A link into a wall counts with what left, too; beyond plane walls that has been taken for what came back, and for
     // what a wall that moves has given.
-    state_.links->for_links(i, [&](int x, int q, double left, bool plane) {
+    state_.links->for_links(i, [&](int x, int q, double left, bool plane, double) {
       const auto& c = Set::velocity[q];
       double change = 0;
       for (int k = 0; k < dimension; ++k) change += c[k] * u[k][x];

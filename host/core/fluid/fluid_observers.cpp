@@ -311,7 +311,7 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
       });
     }
     if (!state.links) continue;
-    state.links->for_links(i, [&](int x, int q, double left, bool plane) {
+    state.links->for_links(i, [&](int x, int q, double left, bool plane, double) {
       if (plane) add_plane(Set::opposite[q], x, -1);  // a wall before it takes all
       for (int k = 0; k < Set::dimension; ++k) {
         if (Set::velocity[q][k] != 0)

@@ -50,19 +50,27 @@ class SolidLinks {
     });
   }
 
-  /// Calls function(x, q, left, plane) for the links of row i: `left` is what has left along the link in the last step,
-  /// `plane` whether it leads out of the domain, over a wall that lies before the domain's own, not to a solid node.
+  /// Calls function(x, q, left, plane, away) for the links of row i: `left` is what has left along the link in the last step,
+  /// `plane` whether it leads out of the domain, over a wall that lies before the domain's own, not to a solid node; `away`: what has left the other way, f'_q.
   template <class Function>
   void for_links(int i, Function function) const {
     for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) {
       const Link& link = links_[k];
-      function(link.x, link.q, static_cast<double>(link.left), link.plane);
+      function(link.x, link.q, static_cast<double>(link.left), link.plane, static_cast<double>(link.away));
     }
   }
-  /// What has left along each link of row i in the last step is left(x, q, what there is), whatever comes back.
-  template <class Left>
-  void recall(int i, Left left) {
-    for_row(i, [&](Link& link) { link.left = static_cast<T>(left(link.x, link.q, static_cast<double>(link.left))); });
+  /// What the collisions of the last step made of the populations along a link: f'_w and f'_q.
+  struct Last {
+    double left, away;
+  };
+  /// Calls function(x, q, last) for the links of row i, whose last step is what that says from now on.
+  template <class Function>
+  void recall(int i, Function function) {
+    for_row(i, [&](Link& link) {
+      Last last{static_cast<double>(link.left), static_cast<double>(link.away)};
+      function(link.x, link.q, last);
+      link.left = static_cast<T>(last.left), link.away = static_cast<T>(last.away);
+    });
   }
   [[nodiscard]] std::size_t bytes() const { return links_.size() * sizeof(Link); }
 
