@@ -5,7 +5,6 @@
 #include <span>
 #include <string>
 
-#include "opening_columns.hpp"
 #include "rotation.hpp"
 
 namespace rouleau::observe {

@@ -12,6 +12,8 @@ std::vector<Observable> columns_of_cells();
 std::vector<Observable> columns_of_aggregates();
 std::vector<Observable> columns_of_series();
 /// Those of them that are there where cells may come or leave (cell_traffic.hpp).
+/// Of series.csv of runs between openings.
+std::vector<Observable> columns_at_openings();
 std::vector<Observable> columns_of_traffic();
 std::vector<Observable> columns_of_aggregate_sizes();
 

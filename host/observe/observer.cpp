@@ -253,7 +253,6 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
   snapshot.shear_rate = snapshot.wall_stress_lower = snapshot.wall_stress_upper = std::nan("");
   snapshot.pressure_gradient = snapshot.discharge_hematocrit = std::nan("");
   snapshot.aggregate_size_number_mean = snapshot.aggregate_size_weight_mean = std::nan("");
-  snapshot.inlet_flow = snapshot.outlet_flow = snapshot.inlet_pressure = snapshot.outlet_pressure = std::nan("");
   const core::AnyFluid<D>& fluid = solver.fluid();
   double drive = fluid.setting().body_force[0];
   if (scene_->domain.openings) drive = observe_openings(fluid, *scene_, units, snapshot);

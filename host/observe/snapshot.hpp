@@ -130,9 +130,10 @@ struct Snapshot {
   double flow_rate = 0;             ///< m2/s, per depth, of a driven channel; NaN elsewhere
   double mean_velocity = 0;         ///< m/s, of a driven channel: the flow rate over the cross-section; NaN elsewhere
   double discharge_hematocrit = 0;  ///< flux of cells over the flow rate; NaN where there is none, or no cells
-  double inlet_flow = 0, outlet_flow = 0;          ///< m2/s, in three dimensions m3/s, along +x; NaN without openings
-  double inlet_pressure = 0, outlet_pressure = 0;  ///< Pa, likewise
-  double cell_free_layer_lower = 0, cell_free_layer_upper = 0;  ///< m; NaN without walls or cells
+  double inlet_flow = std::numeric_limits<double>::quiet_NaN(),
+         outlet_flow = inlet_flow;  ///< m2/s, in three dimensions m3/s, along +x; NaN without openings
+  double inlet_pressure = inlet_flow, outlet_pressure = inlet_flow;  ///< Pa, likewise
+  double cell_free_layer_lower = 0, cell_free_layer_upper = 0;       ///< m; NaN without walls or cells
   double cell_free_layer_empty = 0;  ///< share of the columns in which there is no cell; NaN as the layers
   double particle_stress = 0;        ///< xy, Pa: membranes and viscosity contrast, per area of the domain
   double mach_max = 0;

@@ -8,10 +8,10 @@
 #include "base/process.hpp"
 #include "base/text.hpp"
 #include "constants.hpp"
-#include "feed.hpp"
 #include "scene/lattice.hpp"
 #include "scene/output_schedule.hpp"
 #include "shape/extent.hpp"
+#include "shape/fed_cells.hpp"
 #include "shape/outline.hpp"
 
 namespace rouleau::plan {
@@ -55,7 +55,7 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<scen
   if (!stages.empty() && scene::OutputSchedule(scene.output.fields, stages.front(), false).due(0))
     ++estimate.field_outputs;
 
-  const auto cells = static_cast<double>(cells_at_once(scene).size());
+  const auto cells = static_cast<double>(shape::cells_at_once(scene).size());
   const double membrane = membrane_nodes(scene);
   const scene::FieldStorage& storage = scene.output.field_storage;
   estimate.fields_compressed = storage.compression > 0 && estimate.field_outputs > 0;
@@ -77,7 +77,7 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<scen
   estimate.tables_bytes = row::all_headers + estimate.outputs * (cells > 0 ? row::series : row::series_of_fluid);
   if (cells > 0) {
     double names = 0;
-    for (const scene::CellPlacement& cell : cells_at_once(scene))
+    for (const scene::CellPlacement& cell : shape::cells_at_once(scene))
       names += static_cast<double>(scene.cell_types[cell.type].name.size());
     const double of_cell =
         row::cells + (scene.domain.periodic[1] && !scene.domain.has_shapes() ? 0 : row::wall_gap) + row::aggregates;
@@ -110,14 +110,14 @@ double sum_over_cells(const scene::Scene& scene, Function function) {
   std::vector<double> of_type;
   for (const scene::CellType& type : scene.cell_types) of_type.push_back(function(Body(type)));
   double sum = 0;
-  for (const scene::CellPlacement& cell : cells_at_once(scene)) sum += of_type[cell.type];
+  for (const scene::CellPlacement& cell : shape::cells_at_once(scene)) sum += of_type[cell.type];
   return sum;
 }
 
 /// Surfaces of other cells within the largest cutoff of a node where cells lie anywhere: those in the free volume,
 /// times what lies within the cutoff of one. A half at least, as of a doublet whose faces touch.
 double surfaces_near_a_node(const scene::Scene& scene, double cutoff) {
-  const double content = scene.domain.content(), cells = static_cast<double>(cells_at_once(scene).size());
+  const double content = scene.domain.content(), cells = static_cast<double>(shape::cells_at_once(scene).size());
   const double room = content - sum_over_cells(scene, [](const Body& body) { return body.enclosed; });
   const double within = sum_over_cells(scene, [&](const Body& body) { return body.around(cutoff); });
   return std::max(0.5, within * (cells - 1) / cells / std::max(room, 0.1 * content));
@@ -174,7 +174,7 @@ double membrane_nodes(const scene::Scene& scene) {
   std::vector<double> of_type;
   for (const scene::CellType& type : scene.cell_types) of_type.push_back(shape::node_count(type));
   double nodes = 0;
-  for (const scene::CellPlacement& cell : cells_at_once(scene)) nodes += of_type[cell.type];
+  for (const scene::CellPlacement& cell : shape::cells_at_once(scene)) nodes += of_type[cell.type];
   return nodes;
 }
 

@@ -7,13 +7,13 @@
 
 #include "base/text.hpp"
 #include "constants.hpp"
-#include "feed.hpp"
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
 #include "numerics_problem.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/read_scene.hpp"
 #include "scene/scene_reader.hpp"
+#include "shape/fed_cells.hpp"
 #include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
 #include "shape/walls.hpp"
@@ -249,7 +249,7 @@ OpenScene::OpenScene(json::Document document, Faults& faults) : document_(std::m
   Faults of_draft;
   draft_ = scene::read_scene(draft, of_draft);
   if (of_draft.empty()) shape::build_walls(*draft_, of_draft);
-  if (of_draft.empty()) of_draft.attempt([&] { shape::add_random_cells(*draft_), add_fed_cells(*draft_); });
+  if (of_draft.empty()) of_draft.attempt([&] { shape::add_random_cells(*draft_), shape::add_fed_cells(*draft_); });
   if (of_draft.empty()) return;
   document_ = *draft;  // whose reading says them
   draft_.reset();

@@ -30,8 +30,8 @@ template <int D>
 core::Cells<D> make_cells(const scene::Scene& scene) {
   return make_cells<D>(scene, scene::lattice_spacing(scene));
 }
-/// Calls function(c, cell) with each cell that is there at the beginning by itself, as it would be placed and without a check: for who does not need
-/// all of them at once.
+/// Calls function(c, cell) with each cell that is there at the beginning by itself, as it would be placed and without
+/// a check: for who does not need all of them at once.
 template <int D>
 void for_each_cell(const scene::Scene& scene, double spacing,
                    const std::function<void(std::size_t c, const core::Cells<D>& cell)>& function);

@@ -7,11 +7,11 @@
 #include "base/text.hpp"
 #include "constants.hpp"
 #include "core/solver/schedule.hpp"
-#include "feed.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/lattice.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/extent.hpp"
+#include "shape/fed_cells.hpp"
 #include "shape/outline.hpp"
 
 namespace rouleau::plan {
@@ -30,7 +30,7 @@ double hematocrit(const scene::Scene& scene) {
   std::vector<double> enclosed;
   for (const scene::CellType& type : scene.cell_types) enclosed.push_back(shape::enclosed_by(type));
   double sum = 0;
-  for (const scene::CellPlacement& cell : cells_at_once(scene)) sum += enclosed[cell.type];
+  for (const scene::CellPlacement& cell : shape::cells_at_once(scene)) sum += enclosed[cell.type];
   return sum / scene.domain.content();
 }
 
@@ -95,7 +95,7 @@ std::vector<PlannedPass> planned_passes(const Plan& plan) {
   if (plan.has_wall_interactions) parties.emplace_back("between cells and walls");
   if (plan.has_self_interactions) parties.emplace_back("within a membrane");
   const std::map<std::string, std::string> reasons{
-      {"membrane", std::to_string(cells_at_once(scene).size()) + " cells resist deformation" +
+      {"membrane", std::to_string(shape::cells_at_once(scene).size()) + " cells resist deformation" +
                        (plan.semi_implicit ? "; semi-implicit step" : "")},
       {"interaction", "an active potential acts " + listed(parties)},
       {"corrections", slip ? (area ? "membranes neither slip nor leak" : "membranes do not slip")

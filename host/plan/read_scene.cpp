@@ -7,7 +7,6 @@
 #include "base/sha256.hpp"
 #include "base/text.hpp"
 #include "constants.hpp"
-#include "feed.hpp"
 #include "json/document.hpp"
 #include "limits.hpp"
 #include "numerics_auto.hpp"
@@ -16,6 +15,7 @@
 #include "scene/named_files.hpp"
 #include "scene/read_scene.hpp"
 #include "shape/extent.hpp"
+#include "shape/fed_cells.hpp"
 #include "shape/outline.hpp"
 #include "shape/passages.hpp"
 #include "shape/random_cells.hpp"
@@ -133,7 +133,7 @@ ReadScene completed(const OpenScene& open, const NumericsBounds& bounds, Faults&
     shape::survey_walls(read.scene, same ? former->scene.domain.passages : nullptr);
   }
   if (faults.empty()) faults.attempt([&] { shape::add_random_cells(read.scene); });
-  if (faults.empty()) faults.attempt([&] { add_fed_cells(read.scene); });
+  if (faults.empty()) faults.attempt([&] { shape::add_fed_cells(read.scene); });
   return read;
 }
 

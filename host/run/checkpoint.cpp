@@ -10,6 +10,7 @@
 #include "checkpoint_match.hpp"
 #include "core/solver/in_order.hpp"
 #include "former_state.hpp"
+#include "saved_links.hpp"
 
 namespace rouleau::run {
 
@@ -22,7 +23,6 @@ std::string state_name(std::size_t k) { return "/membranes/state/" + std::to_str
 
 constexpr std::array places{"/membranes/x", "/membranes/y", "/membranes/z"};
 constexpr std::array velocities{"/membranes/velocity_x", "/membranes/velocity_y", "/membranes/velocity_z"};
-constexpr const char *link_places = "/links/place", *link_lefts = "/links/left", *link_aways = "/links/away";
 constexpr std::array indicator_places{"/indicator/x", "/indicator/y", "/indicator/z"};
 
 /// Arrays of the cells that have a value for each node, or for each cell.
@@ -230,14 +230,7 @@ Json save(files::CheckpointWriter* writer, core::AnySolver<D>& solver) {
     if (writer != nullptr) writer->begin_array(population_name(q), rows, nx, fluid.single_precision());
     fluid.gather_populations(q, bands, [&](int, const std::vector<double>& values) { writer->append(values); });
   }
-  const core::LinkMemory links = fluid.link_memory();
-  if (writer != nullptr && !links.place.empty()) {
-    for (const auto& [path, values] : {std::pair{link_places, &links.place}, std::pair{link_lefts, &links.left},
-                                       std::pair{link_aways, &links.away}}) {
-      writer->begin_array(path, values->size());
-      writer->append(*values);
-    }
-  }
+  const std::size_t links = save_links(writer, fluid.link_memory());
   if (auto* const tasks = solver.cell_tasks()) {
     const core::DisplacementWatch::Memory& memory = tasks->viscosity_memory();
     CellArrays<D> to(writer, solver.cells(), tasks->ghosts());
@@ -245,7 +238,7 @@ Json save(files::CheckpointWriter* writer, core::AnySolver<D>& solver) {
     to.of_cells("/indicator/limit", memory.limit);
     to.of_cells("/indicator/bound", memory.bound);
   }
-  Json saved{{"walls_have_acted", fluid.walls_have_acted()}, {"links", links.place.size()}};
+  Json saved{{"walls_have_acted", fluid.walls_have_acted()}, {"links", links}};
   if (const auto& control = solver.flow_control()) {
     const core::FlowControl::State& state = control->state();
     saved["flow_control"] = {{"force", state.force}};
@@ -354,15 +347,10 @@ Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, c
         .populations = [reader, block, domain = plan.scene->domain](
                            int q) { return read_block(*reader, population_name(q), block, domain); },
         .walls_have_acted = saved.at("solver").at("walls_have_acted"),
-        .links = {},
+        .links = read_links(*reader, saved.at("solver")),
         .steps = state.stage_step,
         .flow_control = {},
         .viscosity = {}};
-    if (saved.at("solver").value("links", 0) > 0)  // former versions took what came back for what had left
-      solver.links = {reader->array(link_places), reader->array(link_lefts), reader->array(link_aways)};
-    require(
-        solver.links.place.size() == solver.links.left.size() && solver.links.left.size() == solver.links.away.size(),
-        *reader, "links without what has left along them");
     if (const Json& of_solver = saved.at("solver"); of_solver.contains("flow_control")) {
       const Json& control = of_solver.at("flow_control");
       solver.flow_control = core::FlowControl::State{.force = control.at("force"), .last = {}};

@@ -30,7 +30,7 @@ Traffic<D>::Traffic(const plan::Plan& plan, Engine<D>& engine, RunState& state)
 }
 
 template <int D>
-const plan::Inflow<D>& Traffic<D>::inflow() {
+const Inflow<D>& Traffic<D>::inflow() {
   if (!inflow_ || of_stage_ != state_.stage) inflow_.emplace(plan_, state_.stage, engine_.solver().setup());
   of_stage_ = state_.stage;
   return *inflow_;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine.hpp"
-#include "plan/feed.hpp"
+#include "inflow.hpp"
 #include "run_state.hpp"
 #include "stepper.hpp"
 
@@ -43,7 +43,7 @@ class Traffic {
  private:
   [[nodiscard]] long steps_to_next() const;
   [[nodiscard]] bool is_open() const { return plan_.scene->domain.openings && plan_.has_cells; }
-  [[nodiscard]] const plan::Inflow<D>& inflow();
+  [[nodiscard]] const Inflow<D>& inflow();
   void find_gone();
   void find_come(double time);
   /// The first of these places that is free on all ranks; none: none is.
@@ -52,8 +52,8 @@ class Traffic {
   const plan::Plan& plan_;
   Engine<D>& engine_;
   RunState& state_;
-  std::vector<double> content_;            ///< m3, or m2, of a cell of each type
-  std::optional<plan::Inflow<D>> inflow_;  ///< made when first asked for
+  std::vector<double> content_;      ///< m3, or m2, of a cell of each type
+  std::optional<Inflow<D>> inflow_;  ///< made when first asked for
   int of_stage_ = 0;
   int looks_in_vain_ = 0;  ///< one after another, in which no place was tried: all were too near a wall
   Change change_;

@@ -260,38 +260,6 @@ std::array<EndFlow, 2> Fluid<T, Set>::end_flows() const {
 }
 
 template <class T, class Set>
-LinkMemory Fluid<T, Set>::link_memory() const {
-  std::vector<std::array<double, 3>> links;  // place, and what LinkMemory has of it
-  for (int i = 0; state_.links && i < rows().end; ++i) {
-    state_.links->for_links(i, [&](int x, int q, double left, bool, double away) {
-      links.push_back({state_.place_of_link(i, x, q), left, away});
-    });
-  }
-  std::vector<std::array<double, 3>> all;
-  for (const auto& of_rank : all_of(ranks_, std::move(links))) all.insert(all.end(), of_rank.begin(), of_rank.end());
-  std::sort(all.begin(), all.end());
-  LinkMemory memory;
-  for (const auto& [place, left, away] : all) {
-    memory.place.push_back(place);
-    memory.left.push_back(left), memory.away.push_back(away);
-  }
-  return memory;
-}
-
-template <class T, class Set>
-void Fluid<T, Set>::recall_links(const LinkMemory& memory) {
-  for (int i = 0; state_.links && i < rows().end; ++i) {
-    state_.links->recall(i, [&](int x, int q, auto& last) {
-      const double place = state_.place_of_link(i, x, q);
-      const auto found = std::lower_bound(memory.place.begin(), memory.place.end(), place);
-      if (found == memory.place.end() || *found != place) return;
-      const auto at = static_cast<std::size_t>(found - memory.place.begin());
-      last = {memory.left[at], memory.away[at]};
-    });
-  }
-}
-
-template <class T, class Set>
 std::vector<double> Fluid<T, Set>::row_velocities_without_membranes() const {
   return core::row_velocities_without_membranes(state_, ranks_);
 }

@@ -157,6 +157,38 @@ void FluidState<T, Set>::restart() {
   if (openings) openings->restart();
 }
 
+template <class T, class Set>
+LinkMemory FluidState<T, Set>::link_memory(const Ranks<dimension>& ranks) const {
+  std::vector<std::array<double, 3>> mine;  // place, and what LinkMemory has of it
+  for (int i = 0; links && i < lattice.rows(); ++i) {
+    links->for_links(i, [&](int x, int q, double left, bool, double away) {
+      mine.push_back({place_of_link(i, x, q), left, away});
+    });
+  }
+  std::vector<std::array<double, 3>> all;
+  for (const auto& of_rank : all_of(ranks, std::move(mine))) all.insert(all.end(), of_rank.begin(), of_rank.end());
+  std::sort(all.begin(), all.end());
+  LinkMemory memory;
+  for (const auto& [place, left, away] : all) {
+    memory.place.push_back(place);
+    memory.left.push_back(left), memory.away.push_back(away);
+  }
+  return memory;
+}
+
+template <class T, class Set>
+void FluidState<T, Set>::recall_links(const LinkMemory& memory) {
+  for (int i = 0; links && i < lattice.rows(); ++i) {
+    links->recall(i, [&](int x, int q, auto& last) {
+      const double place = place_of_link(i, x, q);
+      const auto found = std::lower_bound(memory.place.begin(), memory.place.end(), place);
+      if (found == memory.place.end() || *found != place) return;
+      const auto at = static_cast<std::size_t>(found - memory.place.begin());
+      last = {memory.left[at], memory.away[at]};
+    });
+  }
+}
+
 template struct FluidState<float, D2Q9>;
 template struct FluidState<double, D2Q9>;
 template struct FluidState<float, D3Q19>;

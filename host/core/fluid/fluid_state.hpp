@@ -69,6 +69,9 @@ struct FluidState {
 
   /// Completes what lies around the block (AnyFluid::settle).
   void settle();
+  /// AnyFluid::link_memory() and recall_links().
+  [[nodiscard]] LinkMemory link_memory(const Ranks<dimension>& ranks) const;
+  void recall_links(const LinkMemory& memory);
   /// The relaxation rates are those of the suspending fluid.
   void set_plain_rates();
   // What sets all populations, for an even step.

@@ -50,8 +50,9 @@ class SolidLinks {
     });
   }
 
-  /// Calls function(x, q, left, plane, away) for the links of row i: `left` is what has left along the link in the last step,
-  /// `plane` whether it leads out of the domain, over a wall that lies before the domain's own, not to a solid node; `away`: what has left the other way, f'_q.
+  /// Calls function(x, q, left, plane, away) for the links of row i: `left` is what has left along the link in the last
+  /// step, `plane` whether it leads out of the domain, over a wall that lies before the domain's own, not to a solid
+  /// node; `away`: what has left the other way, f'_q.
   template <class Function>
   void for_links(int i, Function function) const {
     for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) {

@@ -18,8 +18,8 @@ namespace rouleau::core {
 inline constexpr int nodes_of_run = static_cast<int>(band_bytes / sizeof(double));
 
 /// Calls take(run, values) on the first rank for one run of cells [run.begin, run.end) after another, until it has had
-/// all: `values` are those that add(cell, values) has appended for each of them on its owner, cell after cell; on the first
-/// rank of a cell that is not there. All
+/// all: `values` are those that add(cell, values) has appended for each of them on its owner, cell after
+/// cell; on the first rank of a cell that is not there. All
 /// ranks together, at any time when no message is on its way. `ghosts`: whose they are; null: this rank has all. No
 /// rank holds more than some runs at a time: one that is faster than the first rank waits for it, as for bands.
 template <class V, int D, class Add, class Take>

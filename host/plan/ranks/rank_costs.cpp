@@ -15,9 +15,9 @@
 #include "core/solver/ghost_cells.hpp"
 #include "plan/constants.hpp"
 #include "plan/estimate.hpp"
-#include "plan/feed.hpp"
 #include "plan/placed_cells.hpp"
 #include "plan/solver_setup.hpp"
+#include "shape/fed_cells.hpp"
 
 namespace rouleau::plan {
 
@@ -249,7 +249,7 @@ std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& b
     cost.nodes = static_cast<long>(core::row_count(block)) * block.size(0);
     const double nodes = static_cast<double>(cost.nodes), all = static_cast<double>(blocks.domain(rank).nodes());
     const auto own = static_cast<double>(cost.membrane_nodes), ghosts = static_cast<double>(cost.ghost_nodes),
-               cells = static_cast<double>(cells_at_once(scene).size());
+               cells = static_cast<double>(shape::cells_at_once(scene).size());
     cost.memory_bytes = memory::of_process + lattice * nodes / all;
     if (plan.has_cells) {
       const double known = (own + ghosts) * cells / membrane_nodes(scene);

@@ -1,35 +1,26 @@
-// Cells that come in through an inlet: how many, when, and where each tries to appear.
+// Cells that come in through an inlet: when, and where each tries to appear.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "core/domain/bounding_box.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/solver/solver_setup.hpp"
 #include "core/surface/surfaces.hpp"
-#include "plan.hpp"
+#include "plan/plan.hpp"
 #include "scene/lattice.hpp"
 #include "shape/rigid_body.hpp"
 
-namespace rouleau::plan {
-
-/// Adds an entry to scene.cells for each cell that can come in while the stages last. They are not placed: their places
-/// stand for none. Throws Error(bad_input) where they are more than can be computed.
-void add_fed_cells(scene::Scene& scene);
-
-/// The cells that are there at one time, about: those that are placed, and as many of the others as make up the feed's
-/// hematocrit.
-std::span<const scene::CellPlacement> cells_at_once(const scene::Scene& scene);
+namespace rouleau::run {
 
 /// Where cells come in, and how close to the openings they may be. They come as from a well mixed reservoir: a place is
-/// drawn as often as the developed flow of the inlet brings fluid there, and any angle; it is drawn again where the cell
-/// would touch a wall or another cell.
+/// drawn as often as the developed flow of the inlet brings fluid there, and any angle; again where the cell would
+/// touch a wall or another cell.
 template <int D>
 class Inflow {
  public:
   /// The plan's scene has openings, and outlives it; `setup` of this stage.
-  Inflow(const Plan& plan, int stage, const core::BasicSolverSetup<D>& setup);
+  Inflow(const plan::Plan& plan, int stage, const core::BasicSolverSetup<D>& setup);
 
   /// How many cells have come in after so long, s: their volume is the hematocrit's share of all that came in.
   [[nodiscard]] int due(double time) const;
@@ -63,4 +54,4 @@ class Inflow {
 extern template class Inflow<2>;
 extern template class Inflow<3>;
 
-}  // namespace rouleau::plan
+}  // namespace rouleau::run

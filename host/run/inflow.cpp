@@ -1,70 +1,26 @@
-#include "feed.hpp"
+#include "inflow.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <string>
 
-#include "base/text.hpp"
 #include "core/contact/wall_gap.hpp"
 #include "core/fluid/openings/section.hpp"
-#include "placed_cells.hpp"
-#include "scene/lattice.hpp"
-#include "scene/scene_reader.hpp"
+#include "plan/placed_cells.hpp"
 #include "shape/extent.hpp"
 
-namespace rouleau::plan {
+namespace rouleau::run {
 namespace {
 
-constexpr double kept_apart = 2;    // spacings, from other cells and from walls
-constexpr int places_at_once = 32;  // at a time
-
-double duration_of(const scene::Scene& scene) {
-  double sum = 0;
-  for (const scene::Stage& stage : scene.stages) sum += stage.duration.value_or(0);
-  return sum;
-}
-
-/// How many cells come in each second through an inlet of this area, m2, or m in two dimensions.
-double arrivals(const scene::Scene& scene, const scene::Feed& feed, double area) {
-  return feed.hematocrit * *scene.domain.openings->front().mean_velocity * area /
-         shape::enclosed_by(scene.cell_types[feed.type]);
-}
+constexpr double kept_apart = 2;  // spacings, from other cells and from walls
+constexpr int places_at_once = 32;
 
 }  // namespace
 
-void add_fed_cells(scene::Scene& scene) {
-  if (scene.domain.feed() == nullptr) return;
-  scene::Feed& feed = *scene.domain.openings->front().cells;
-  const double area = scene.domain.size.product() / scene.domain.size.x();  // all of the end is open at most
-  const double most = std::ceil(arrivals(scene, feed, area) * duration_of(scene)) + 1;
-  const scene::SceneFields fields(*scene.document);
-  if (!(most <= static_cast<double>(scene::most_cells))) {
-    fields.refuse(feed.pointer, "about " + number(most, 3) + " cells would come in during the stages; at most " +
-                                    std::to_string(scene::most_cells) +
-                                    " can be computed\nmake the stages shorter, or the hematocrit smaller");
-  }
-  feed.first = static_cast<int>(scene.cells.size());
-  feed.count = static_cast<int>(most);
-  fields.require_room(scene.cells.size(), static_cast<std::size_t>(feed.count), feed.pointer);
-  scene.fed = static_cast<std::size_t>(feed.count);
-  scene.cells.insert(scene.cells.end(), scene.fed, {feed.type, 0.5 * scene.domain.size, 0, feed.pointer});
-  scene::check_membrane_nodes(scene);
-}
-
-std::span<const scene::CellPlacement> cells_at_once(const scene::Scene& scene) {
-  const scene::Feed* const feed = scene.domain.feed();
-  if (feed == nullptr) return scene.cells;
-  const double fed =
-      std::ceil(feed->hematocrit * scene.domain.content() / shape::enclosed_by(scene.cell_types[feed->type]));
-  const auto come = static_cast<std::size_t>(std::min(fed, static_cast<double>(scene.fed)));
-  return {scene.cells.data(), scene.placed().size() + come};
-}
-
 template <int D>
-Inflow<D>::Inflow(const Plan& plan, int stage, const core::BasicSolverSetup<D>& setup)
+Inflow<D>::Inflow(const plan::Plan& plan, int stage, const core::BasicSolverSetup<D>& setup)
     : feed_(plan.scene->domain.feed()),
-      none_(without_cells<D>(*plan.scene, scene::lattice_spacing(*plan.scene))),
+      none_(plan::without_cells<D>(*plan.scene, scene::lattice_spacing(*plan.scene))),
       domain_(scene::lattice_domain<D>(*plan.scene)),
       region_(setup.region),
       origin_(0 * plan.scene->domain.size),
@@ -102,7 +58,7 @@ std::vector<core::Cells<D>> Inflow<D>::places(int cell, long step) const {
       placement.axis = Eigen::Vector3d(across * std::cos(around), along, across * std::sin(around));
     }
     core::Cells<D> cell_there = none_;
-    add_placed(cell_there, placement, spacing_);
+    plan::add_placed(cell_there, placement, spacing_);
     core::Vec<D> move = way_in(core::box_of<D>(cell_there, 0), numbers);
     for (int k = 0; k < D; ++k) {
       for (double& place : cell_there.position[k]) place += move[k];
@@ -177,10 +133,11 @@ bool Inflow<D>::is_apart(const core::Cells<D>& cell, const core::Cells<D>& other
       if ((node(cell, j) - place).squaredNorm() < kept_apart * kept_apart) return false;
     }
   }
-  return !encloses(cell, 0, node(others, range.first) + move) && !encloses(others, other, node(cell, 0) - move);
+  return !plan::encloses(cell, 0, node(others, range.first) + move) &&
+         !plan::encloses(others, other, node(cell, 0) - move);
 }
 
 template class Inflow<2>;
 template class Inflow<3>;
 
-}  // namespace rouleau::plan
+}  // namespace rouleau::run
