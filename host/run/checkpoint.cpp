@@ -337,8 +337,7 @@ Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, c
     complete_former_state<D>(run, plan);
     run.get_to(state);
     if (plan.scene->domain.openings) saved.at("traffic").get_to(state.traffic);
-    if (plan.scene->domain.openings)
-      require(state.traffic.fits(cells.cells.size()), *reader, "cells that are not there");
+    require(state.traffic.fits(cells.cells.size()), *reader, "cells that are not there");
     if (take_part) take_part(read_boxes<D>(*reader, cells));
     require(state.fits(plan, cells), *reader, "counts of another scene");
     restore_cells(*reader, saved.at("membranes"), cells);
@@ -348,17 +347,14 @@ Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, c
                            int q) { return read_block(*reader, population_name(q), block, domain); },
         .walls_have_acted = saved.at("solver").at("walls_have_acted"),
         .links = read_links(*reader, saved.at("solver")),
-        .steps = state.stage_step,
-        .flow_control = {},
-        .viscosity = {}};
+        .steps = state.stage_step};
     if (const Json& of_solver = saved.at("solver"); of_solver.contains("flow_control")) {
       const Json& control = of_solver.at("flow_control");
       solver.flow_control = core::FlowControl::State{.force = control.at("force"), .last = {}};
       if (control.contains("last")) solver.flow_control->last = control.at("last").get<double>();
     }
     if (!cells.cells.empty()) {
-      core::DisplacementWatch::Memory& memory = solver.viscosity;
-      memory = core::DisplacementWatch::Memory(cells);
+      core::DisplacementWatch::Memory& memory = solver.viscosity = core::DisplacementWatch::Memory(cells);
       const std::vector<Range> known = cells.known_nodes();
       for (int k = D - 1; k >= 0; --k) read(*reader, indicator_places[k], known, memory.position[k]);
       read(*reader, "/indicator/limit", memory.limit);
