@@ -22,6 +22,7 @@ template <int D>
 Traffic<D>::Traffic(const plan::Plan& plan, Engine<D>& engine, RunState& state)
     : plan_(plan), engine_(engine), state_(state) {
   if (!is_open()) return;
+  state.traffic.cells_of_scene = plan.scene->cells.size();
   state.traffic.there.resize(plan.scene->placed().size());
   std::iota(state.traffic.there.begin(), state.traffic.there.end(), 0);
   for (const scene::CellType& type : plan.scene->cell_types) content_.push_back(shape::enclosed_by(type));

@@ -101,7 +101,7 @@ class A_run_without_attraction(PageCase):
 
     def test_names_every_column_with_its_unit(self):
         drawn = {"": ("", 1), "s": (", s", 1), "m": (", µm", 1e6), "rad": (", °", 180 / 3.141592653589793), "m2": (", µm²", 1e12), "m3": (", µm³", 1e18),
-                 "1/s": (", 1/s", 1), "Pa": (", Pa", 1), "Pa/m": (", Pa/m", 1), "m2/s": (", µm²/s", 1e12), "m/s": (", µm/s", 1e6), "J/m": (", J/m", 1), "W/m": (", W/m", 1)}
+                 "1/s": (", 1/s", 1), "Pa": (", Pa", 1), "Pa/m": (", Pa/m", 1), "m2/s": (", µm²/s", 1e12), "m3/s": (", µm³/s", 1e18), "m/s": (", µm/s", 1e6), "J/m": (", J/m", 1), "W/m": (", W/m", 1)}
         columns = [column for t in json.loads(rouleau("columns").stdout) for column in t["columns"]]
         page = self.open(self.directory / "report.html")
         found = page.run(f"{json.dumps([column['column'] for column in columns])}.map(drawnAs)")
