@@ -310,11 +310,6 @@ void check_openings(const SceneFields& fields, const Scene& scene) {
                       "between openings no flow is known to begin with\nleave start out, and let the flow come to be");
     });
     fields.attempt([&] {
-      if (!stage.until_at_rest && !stage.until_equilibrium) return;
-      fields.refuse_key(stage.pointer + "/until",
-                        "between openings fluid and cells pass, and do not come to rest\ngive duration instead");
-    });
-    fields.attempt([&] {
       if (!scene.domain.feed() || stage.duration || !fields.settled(stage.pointer)) return;
       fields.refuse(stage.pointer,
                     "cells come in, and how many can is not known of a stage that has no duration\ngive duration "

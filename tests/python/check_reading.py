@@ -351,7 +351,7 @@ class Figures(Case):
     def test_have_the_right_unit_for_every_column_that_a_run_can_have(self):
         from rouleau.drawing import label_of
         drawn = {"": ("", 1), "s": ("(s)", 1), "m": ("(µm)", 1e6), "rad": ("(°)", 180 / math.pi), "m2": ("(µm²)", 1e12), "m3": ("(µm³)", 1e18),
-                 "1/s": ("(1/s)", 1), "Pa": ("(Pa)", 1), "Pa/m": ("(Pa/m)", 1), "m2/s": ("(µm²/s)", 1e12), "m/s": ("(µm/s)", 1e6), "J/m": ("(J/m)", 1), "W/m": ("(W/m)", 1)}
+                 "1/s": ("(1/s)", 1), "Pa": ("(Pa)", 1), "Pa/m": ("(Pa/m)", 1), "m2/s": ("(µm²/s)", 1e12), "m3/s": ("(µm³/s)", 1e18), "m/s": ("(µm/s)", 1e6), "J/m": ("(J/m)", 1), "W/m": ("(W/m)", 1)}
         tables = json.loads(subprocess.run([os.environ["ROULEAU"], "columns"], capture_output=True, check=True).stdout)
         columns = [column for table in tables for column in table["columns"]]
         self.assertGreater(len(columns), 60)

@@ -71,16 +71,17 @@ void move_nodes(Worker worker, CellNodes& cells) {
 
 template <int D>
 std::array<double, 3> mean_velocity(const CellNodes& cells, const Ranks<D>& ranks) {
-  std::vector<ExactSum> sums(D + 1);  // and the number of nodes that are there
+  std::vector<ExactSum> sums(D);
   for (const int c : cells.own_cells()) {
     const CellRange& cell = cells.cells[c];
-    sums[D].add(cell.count);
     for (std::size_t k = 0; k < D; ++k)
       sums[k].add(cells.velocity[k].data() + cell.first, static_cast<std::size_t>(cell.count));
   }
   add_up(ranks, sums);
+  // Who asks on several ranks has openings nowhere, and all cells somewhere.
+  const int nodes = ranks.several() ? cells.node_count() : cells.known_node_count();
   std::array<double, 3> mean{};
-  for (std::size_t k = 0; k < D; ++k) mean[k] = sums[k].value() / std::max(1.0, sums[D].value());
+  for (std::size_t k = 0; k < D; ++k) mean[k] = sums[k].value() / std::max(1, nodes);
   return mean;
 }
 
