@@ -40,7 +40,7 @@ Inflow<D>::Inflow(const plan::Plan& plan, int stage, const core::BasicSolverSetu
 
 template <int D>
 int Inflow<D>::due(double time) const {
-  return feed_ == nullptr ? 0 : std::min(feed_->count, static_cast<int>(time * cells_per_second_ + 0.5));
+  return feed_ == nullptr ? 0 : std::min(feed_->count, static_cast<int>(std::lround(time * cells_per_second_)));
 }
 
 template <int D>

@@ -77,8 +77,8 @@ void Traffic<D>::find_come(double time) {
 
 template <int D>
 auto Traffic<D>::free_place(int cell) -> std::optional<typename Engine<D>::Cells> {
-  auto places = inflow().places(cell, state_.steps);
-  looks_in_vain_ = places.empty() ? looks_in_vain_ + 1 : 0;
+  auto tries = inflow().places(cell, state_.steps);
+  looks_in_vain_ = tries.empty() ? looks_in_vain_ + 1 : 0;
   if (looks_in_vain_ > most_looks_in_vain) {
     const scene::Scene& scene = *plan_.scene;
     throw Error(
@@ -87,9 +87,9 @@ auto Traffic<D>::free_place(int cell) -> std::optional<typename Engine<D>::Cells
         {"take a wider inlet, a smaller cell, or a finer lattice"});
   }
   const auto& cells = engine_.cells();
-  std::vector<char> taken(places.size(), 0);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto is_near = [&](const auto& others, int other) { return !inflow().is_apart(places[i], others, other); };
+  std::vector<char> taken(tries.size(), 0);
+  for (std::size_t i = 0; i < tries.size(); ++i) {
+    const auto is_near = [&](const auto& others, int other) { return !inflow().is_apart(tries[i], others, other); };
     for (const Arrival& other : change_.come) taken[i] = taken[i] != 0 || is_near(other.nodes, 0) ? 1 : 0;
     for (const int other : cells.own_cells()) taken[i] = taken[i] != 0 || is_near(cells, other) ? 1 : 0;
   }
@@ -98,7 +98,7 @@ auto Traffic<D>::free_place(int cell) -> std::optional<typename Engine<D>::Cells
   }
   const auto free = std::find(taken.begin(), taken.end(), 0);
   if (free == taken.end()) return std::nullopt;
-  return std::move(places[static_cast<std::size_t>(free - taken.begin())]);
+  return std::move(tries[static_cast<std::size_t>(free - taken.begin())]);
 }
 
 template <int D>
