@@ -27,8 +27,10 @@ NEEDS = {"field-region": {"domain"}, "length-beyond-box": {"domain"}, "unit-forg
          "missing-nodes": {"domain", "numerics"}, "missing-segments": {"numerics"}, "layer-": {"domain"},
          "layers-with": {"fluid", "cells", "cell_types", "domain"}, "layers-oscillating": {"fluid", "domain"}, "output-by-strain": {"stages"},
          "cell-type-unknown": {"cell_types"}, "wall-misspelt": {"cell_types"}, "no-cell-types": {"cell_types"}}
-# What others are about stands elsewhere then, or is gone: the key, the flow, the walls.
+# What others are about stands elsewhere then, or is gone: the key, the flow, the walls. Openings refuse layers and drives that
+# others bring (BETWEEN_OPENINGS).
 RENAMES = {"cell-type-name-with-comma", "unknown-key-at-the-top", "output-by-strain-without-shear", "shear-between-periodic-sides"}
+BETWEEN_OPENINGS = ("inlet-", "openings-", "outlet-")
 COMBINED, AT_ONCE = 60, 5  # scenes, and faults in each
 
 
@@ -113,7 +115,7 @@ def main() -> int:
                     hidden = alone[name] if name in OF_ALL_CELLS else ()
                     check(f"{name} beside {pointer}", with_it(scene), {**alone[name], **planted}, hidden)
         said = wanted = 0
-        single = sorted(name for name in scenes.keys() - RENAMES - OF_ALL_CELLS if len(cases[name]["change"]) == 1)
+        single = sorted(name for name in scenes.keys() - RENAMES - OF_ALL_CELLS if len(cases[name]["change"]) == 1 and not name.startswith(BETWEEN_OPENINGS))
         while wanted < COMBINED * AT_ONCE:
             names = chance.sample(single, AT_ONCE)
             parts = {part_of(alone[name]) for name in names}
