@@ -4,7 +4,6 @@
 #include <cmath>
 #include <variant>
 
-#include "observe/cell_traffic.hpp"
 #include "observe/observables.hpp"
 
 namespace rouleau::files {

@@ -166,11 +166,8 @@ template <int D>
 std::vector<WallPoint<D>> wall_points(const core::RegionPointer<D>& region, const core::Domain<D>& domain) {
   constexpr std::size_t most = 10'000;
   constexpr double step = 0.5;  // into the fluid
-  core::Domain<D> without_ends = domain;
-  without_ends.periodic[0] = true;  // openings are no walls
-  const core::RegionPointer<D> fluid = core::intersection<D>({region, core::between_walls<D>(without_ends)}),
-                               closed = core::intersection<D>({fluid, core::between_walls<D>(domain)});
-  const core::Border<D> border = core::border_of_region(*closed, domain);
+  const core::RegionPointer<D> fluid = core::intersection<D>({region, core::between_walls<D>(domain)});
+  const core::Border<D> border = core::border_of_region(*fluid, domain);
   double longest = 0;
   for (const int nodes : domain.size) longest += nodes;
   std::vector<WallPoint<D>> points;
@@ -178,7 +175,6 @@ std::vector<WallPoint<D>> wall_points(const core::RegionPointer<D>& region, cons
     const std::array<int, D>& facet = border.facets[i];
     WallPoint<D> point{core::Vec<D>::Zero(), core::size_of<D>(border, facet), step};
     for (const int corner : facet) point.place += border.corners[corner] / D;
-    if (fluid->distance(point.place).value > step) continue;  // in an opening
     const core::Vec<D> inward = -border.normal(facet).normalized();
     // Corners of facets are off the wall by less than half a step.
     const auto stays_nearest = [&](double far) {

@@ -109,6 +109,12 @@ void CellTraffic::flowed(const std::array<double, 2>& along_x, double time) {
   last_time_ = time;
 }
 
+std::vector<int> CellTraffic::there() const {
+  std::vector<int> cells;
+  for (const auto& [cell, visit] : inside_) cells.push_back(cell);
+  return cells;
+}
+
 void CellTraffic::tell(Snapshot& snapshot) const {
   snapshot.cells_in = in();
   snapshot.cells_inside = inside();

@@ -39,6 +39,8 @@ class CellTraffic {
 
   [[nodiscard]] long in() const { return in_; }  ///< through openings, without those that were placed
   [[nodiscard]] long inside() const { return static_cast<long>(inside_.size()); }
+  /// The cells that are there, ascending.
+  [[nodiscard]] std::vector<int> there() const;
   [[nodiscard]] long out() const { return out_; }
   void tell(Snapshot& snapshot) const;
   /// summary.json's "cell_traffic": {cells_in, cells_inside, cells_out, residence_time_s: {mean, least, most, cells} of

@@ -11,8 +11,7 @@ namespace rouleau::observe {
 std::vector<Observable> columns_of_cells();
 std::vector<Observable> columns_of_aggregates();
 std::vector<Observable> columns_of_series();
-/// Those of them that are there where cells may come or leave (cell_traffic.hpp).
-/// Of series.csv of runs between openings.
+/// Those of series.csv that runs between openings have, and those where cells may come or leave (cell_traffic.hpp).
 std::vector<Observable> columns_at_openings();
 std::vector<Observable> columns_of_traffic();
 std::vector<Observable> columns_of_aggregate_sizes();

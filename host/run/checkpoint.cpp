@@ -339,7 +339,7 @@ Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, c
     if (plan.scene->domain.openings) saved.at("traffic").get_to(state.traffic);
     require(!plan.scene->domain.openings || state.traffic.fits(cells.cells.size()), *reader,
             "another number of cells that may come in, which follows from hematocrit and durations");
-    if (take_part) take_part(read_boxes<D>(*reader, cells));
+    if (take_part) take_part([&] { return read_boxes<D>(*reader, cells); });
     require(state.fits(plan, cells), *reader, "counts of another scene");
     restore_cells(*reader, saved.at("membranes"), cells);
     cells.forget(cells.unknown_nodes());

@@ -58,12 +58,12 @@ struct Restored {
   core::SolverState solver;        ///< which keeps the file open
   files::DirectoryMark directory;  ///< how far the files of the directory had come
 };
-/// Finds this rank's part in the cells with these boxes, and tells the cells (GhostCells::set_parts).
+/// Tells the cells this rank's part in them (GhostCells::set_parts), by their boxes where it needs these.
 template <int D>
-using TakePart = std::function<void(const std::vector<core::BoundingBox<D>>& boxes)>;
+using TakePart = std::function<void(const std::function<std::vector<core::BoundingBox<D>>()>& read_boxes)>;
 /// Into the state and the cells of the same scene; `block`: of the lattice, that the solver will compute; `take_part`:
-/// null without other ranks. No memory is taken for what others alone know of cells. Throws Error(input_output) where
-/// the checkpoint does not fit.
+/// null where this rank has all cells. No memory is taken for what others alone know of cells. Throws
+/// Error(input_output) where the checkpoint does not fit.
 template <int D>
 Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, const plan::Plan& plan,
                  const core::Box<D>& block, RunState& state, typename core::AnySolver<D>::Cells& cells,

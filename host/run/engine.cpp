@@ -85,12 +85,13 @@ auto Engine<D>::restore_cells(const std::shared_ptr<const files::CheckpointReade
   std::optional<Start> start;
   TakePart<D> take_part;
   if (ranks_.several() && plan_.has_cells) {
-    take_part = [&](const Boxes& boxes) {
-      start = prepare(state.stage, boxes, owners(boxes, state.traffic.there, owner_));
+    take_part = [&](const auto& read_boxes) {
+      const Boxes boxes = read_boxes();
+      start = prepare(state.stage, boxes, owners(boxes, state.traffic.cells.there(), owner_));
       start->part->set_parts(cells_);
     };
-  } else if (scene.domain.openings && plan_.has_cells) {
-    take_part = [&](const Boxes&) { cells_.keep_only(state.traffic.there); };
+  } else if (observe::has_traffic(scene)) {
+    take_part = [&](const auto&) { cells_.keep_only(state.traffic.cells.there()); };
   }
   Restored restored = restore<D>(reader, plan_, domain().block, state, cells_, take_part);
   if (!start) start = prepare(state.stage, {}, {});

@@ -23,6 +23,7 @@ Inflow<D>::Inflow(const plan::Plan& plan, int stage, const core::BasicSolverSetu
       none_(plan::without_cells<D>(*plan.scene, scene::lattice_spacing(*plan.scene))),
       domain_(scene::lattice_domain<D>(*plan.scene)),
       region_(setup.region),
+      most_(static_cast<int>(plan.scene->fed)),
       origin_(0 * plan.scene->domain.size),
       spacing_(scene::lattice_spacing(*plan.scene)) {
   if (feed_ == nullptr) return;
@@ -40,7 +41,7 @@ Inflow<D>::Inflow(const plan::Plan& plan, int stage, const core::BasicSolverSetu
 
 template <int D>
 int Inflow<D>::due(double time) const {
-  return feed_ == nullptr ? 0 : std::min(feed_->count, static_cast<int>(std::lround(time * cells_per_second_)));
+  return std::min(most_, static_cast<int>(std::lround(time * cells_per_second_)));
 }
 
 template <int D>

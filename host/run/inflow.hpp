@@ -45,6 +45,7 @@ class Inflow {
   core::Cells<D> none_;      ///< but for the cell types
   core::Domain<D> domain_;
   core::RegionPointer<D> region_;
+  int most_;  ///< cells that may come in
   scene::Vector origin_;
   double spacing_;               ///< m
   double cells_per_second_ = 0;  ///< of the feed

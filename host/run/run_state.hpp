@@ -44,16 +44,15 @@ class PassCosts {
 
 /// Cells that come and go through openings.
 struct TrafficState {
-  std::vector<int> there;          ///< in their order
   std::size_t cells_of_scene = 0;  ///< those that may come in among them
   long next = 0;                   ///< step of the run at which to look who comes and goes
   observe::CellTraffic cells;
   /// Whether it is about cells of a scene with so many.
   [[nodiscard]] bool fits(std::size_t count) const {
-    return cells_of_scene == count && std::is_sorted(there.begin(), there.end()) &&
-           (there.empty() || (there.front() >= 0 && static_cast<std::size_t>(there.back()) < count));
+    const std::vector<int> there = cells.there();
+    return cells_of_scene == count && (there.empty() || (there.front() >= 0 && there.back() < static_cast<int>(count)));
   }
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(TrafficState, there, cells_of_scene, next, cells)
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(TrafficState, cells_of_scene, next, cells)
 };
 
 struct RunState {

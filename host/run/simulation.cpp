@@ -148,7 +148,6 @@ class Simulation final : StepHooks {
       traffic_.found() ? change_cells() : cut_again();
     }
     take_time();
-    cells_due_ = traffic_.due_by_now();
     state_.end_stage(setting(), stage_->ended);
     log("stage_ended", {{"name", setting().stage->name},
                         {"steps", state_.stage_step},
@@ -348,7 +347,7 @@ class Simulation final : StepHooks {
     s.checkpoint_step = checkpoints_.kept();
     if (observe::has_traffic(scene()))
       s.cell_traffic = state_.traffic.cells.summary(scene().domain.in_plane() ? "m2" : "m3"),
-      s.cell_traffic["cells_due"] = cells_due_;
+      s.cell_traffic["cells_due"] = traffic_.due_by(state_.time);
     s.area_leakage_max = observe::Observer::area_leakage(engine_.cells(), ranks());
   }
 
@@ -370,7 +369,6 @@ class Simulation final : StepHooks {
   Summary summary_;
   Stepper stepper_{*this};
   Balance balance_;
-  int cells_due_ = 0;           ///< that should have come in by the end of the last stage
   std::optional<Stage> stage_;  ///< the present one
   Clock::time_point clock_;
 };

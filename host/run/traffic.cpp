@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "base/error.hpp"
@@ -23,11 +22,11 @@ Traffic<D>::Traffic(const plan::Plan& plan, Engine<D>& engine, RunState& state)
     : plan_(plan), engine_(engine), state_(state) {
   if (!is_open()) return;
   state.traffic.cells_of_scene = plan.scene->cells.size();
-  state.traffic.there.resize(plan.scene->placed().size());
-  std::iota(state.traffic.there.begin(), state.traffic.there.end(), 0);
   for (const scene::CellType& type : plan.scene->cell_types) content_.push_back(shape::enclosed_by(type));
-  for (const int c : state.traffic.there)
-    state.traffic.cells.came(c, content_[plan.scene->cells[c].type], 0, observe::CellTraffic::no_opening);
+  for (std::size_t c = 0; c < plan.scene->placed().size(); ++c) {
+    state.traffic.cells.came(static_cast<int>(c), content_[plan.scene->cells[c].type], 0,
+                             observe::CellTraffic::no_opening);
+  }
 }
 
 template <int D>
@@ -66,12 +65,11 @@ void Traffic<D>::find_gone() {
 
 template <int D>
 void Traffic<D>::find_come(double time) {
-  const scene::Feed* const feed = plan_.scene->domain.feed();
-  if (feed == nullptr) return;
+  const int first = static_cast<int>(plan_.scene->placed().size());
   for (int k = static_cast<int>(state_.traffic.cells.in()); k < inflow().due(time); ++k) {
-    auto nodes = free_place(feed->first + k);
+    auto nodes = free_place(first + k);
     if (!nodes) return;  // it waits, and those behind it
-    change_.come.push_back({feed->first + k, *std::move(nodes)});
+    change_.come.push_back({first + k, *std::move(nodes)});
   }
 }
 
@@ -108,11 +106,9 @@ auto Traffic<D>::take() -> Change {
   for (const Departure& departure : change.gone) gone.push_back(departure.cell);
   engine_.change_cells(gone, change.come);
   TrafficState& traffic = state_.traffic;
-  std::erase_if(traffic.there, [&](int c) { return std::binary_search(gone.begin(), gone.end(), c); });
   const double time = state_.time_at(plan_.stages[state_.stage]);
   for (const Departure& departure : change.gone) traffic.cells.left(departure.cell, time, departure.end);
   for (const Arrival& arrival : change.come) {
-    traffic.there.push_back(arrival.cell);
     state_.observer.begin_with(arrival.nodes, 0, arrival.cell);
     traffic.cells.came(arrival.cell, content_[plan_.scene->cells[arrival.cell].type], time, lower_end);
   }

@@ -33,8 +33,8 @@ class Traffic {
   [[nodiscard]] bool due();
   /// Whether that was so, and is still to be done.
   [[nodiscard]] bool found() const { return change_.any(); }
-  /// How many have come in by now, or wait for room.
-  [[nodiscard]] int due_by_now() { return is_open() ? inflow().due(state_.time_at(plan_.stages[state_.stage])) : 0; }
+  /// How many have come in after so long, s, or wait for room.
+  [[nodiscard]] int due_by(double time) { return inflow().due(time); }
   /// What due() has found is done.
   Change take();
   /// The step of the stage at which it looks again.
@@ -42,7 +42,7 @@ class Traffic {
 
  private:
   [[nodiscard]] long steps_to_next() const;
-  [[nodiscard]] bool is_open() const { return plan_.scene->domain.openings && plan_.has_cells; }
+  [[nodiscard]] bool is_open() const { return observe::has_traffic(*plan_.scene); }
   [[nodiscard]] const Inflow<D>& inflow();
   void find_gone();
   void find_come(double time);

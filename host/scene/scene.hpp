@@ -47,11 +47,10 @@ struct Passages {
 
 /// Cells that come in through an opening while the run goes on.
 struct Feed {
-  int type;                  ///< index into Scene::cell_types
-  double hematocrit;         ///< cell volume that comes in over all volume that comes in: a discharge hematocrit
-  std::uint32_t seed;        ///< of places and angles
-  double length;             ///< m, of the piece behind the opening in which they appear; 0: not written
-  int first = 0, count = 0;  ///< they are Scene::cells[first] ... [first + count - 1], in the order in which they come
+  int type;            ///< index into Scene::cell_types
+  double hematocrit;   ///< cell volume that comes in over all volume that comes in: a discharge hematocrit
+  std::uint32_t seed;  ///< of places and angles
+  double length;       ///< m, of the piece behind the opening in which they appear; 0: not written
   std::string pointer;
 };
 
@@ -307,7 +306,8 @@ struct Scene {
   Numerics numerics;
   std::vector<CellType> cell_types;
   std::vector<CellPlacement> cells;
-  std::size_t fed = 0;  ///< the last so many of `cells` are not placed: they come in while the run goes on
+  /// The last so many of `cells` are not placed: the inlet's, in the order in which they come in.
+  std::size_t fed = 0;
   std::vector<RandomPacking> packings;
   std::vector<Interaction> interactions;
   std::vector<Stage> stages;

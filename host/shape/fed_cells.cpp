@@ -27,7 +27,7 @@ double arrivals(const scene::Scene& scene, const scene::Feed& feed, double area)
 
 void add_fed_cells(scene::Scene& scene) {
   if (scene.domain.feed() == nullptr) return;
-  scene::Feed& feed = *scene.domain.openings->front().cells;
+  const scene::Feed& feed = *scene.domain.feed();
   const double area = scene.domain.size.product() / scene.domain.size.x();  // all of the end is open at most
   const double most = std::ceil(arrivals(scene, feed, area) * duration_of(scene)) + 1;
   const scene::SceneFields fields(*scene.document);
@@ -36,10 +36,8 @@ void add_fed_cells(scene::Scene& scene) {
                                     std::to_string(scene::most_cells) +
                                     " can be computed\nmake the stages shorter, or the hematocrit smaller");
   }
-  feed.first = static_cast<int>(scene.cells.size());
-  feed.count = static_cast<int>(most);
-  fields.require_room(scene.cells.size(), static_cast<std::size_t>(feed.count), feed.pointer);
-  scene.fed = static_cast<std::size_t>(feed.count);
+  scene.fed = static_cast<std::size_t>(most);
+  fields.require_room(scene.cells.size(), scene.fed, feed.pointer);
   scene.cells.insert(scene.cells.end(), scene.fed, {feed.type, 0.5 * scene.domain.size, 0, feed.pointer});
   scene::check_membrane_nodes(scene);
 }

@@ -96,11 +96,11 @@ class AnyFluid {
   [[nodiscard]] WallVelocity walls_now() const {
     return {(last_walls_.lower + setting_.walls.lower) / 2, (last_walls_.upper + setting_.walls.upper) / 2};
   }
-  /// Whether the walls have exchanged momentum with this state of the fluid (wall_forces).
   /// What the last step left along the links to solid nodes, of all blocks: all ranks together, and all get the same.
   /// What comes back does not tell it, and walls of any shape get both.
   [[nodiscard]] virtual LinkMemory link_memory() const = 0;
   virtual void recall_links(const LinkMemory& memory) = 0;
+  /// Whether the walls have exchanged momentum with this state of the fluid (wall_forces).
   [[nodiscard]] bool walls_have_acted() const { return walls_have_acted_; }
 
   /// Completes the halo so that what follows may be called.

@@ -292,12 +292,12 @@ void EnergySum<T, Set>::add(int i) {
     });
     // A link into a wall counts with what left, too; beyond plane walls that has been taken for what came back, and for
     // what a wall that moves has given.
-    state_.links->for_links(i, [&](int x, int q, double left, bool plane, double) {
+    state_.links->for_links(i, [&](int x, int q, const auto& link, bool plane) {
       const auto& c = Set::velocity[q];
       double change = 0;
       for (int k = 0; k < dimension; ++k) change += c[k] * u[k][x];
       const double f = static_cast<double>(task.in[q][x]), speed = plane ? c[0] * task.wall_speed[1 - c[1]] : 0;
-      sums_[dissipation].add(-(plane ? left - f : left) * change);
+      sums_[dissipation].add(-(plane ? link.left - f : link.left) * change);
       if (speed != 0) sums_[dissipation].add(-(2 * f + 6 * Set::weight[q] * (change - speed)) * speed);
     });
   }

@@ -311,13 +311,13 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
       });
     }
     if (!state.links) continue;
-    state.links->for_links(i, [&](int x, int q, double left, bool plane, double) {
+    state.links->for_links(i, [&](int x, int q, const auto& last, bool plane) {
       if (plane) add_plane(Set::opposite[q], x, -1);  // a wall before it takes all
       for (int k = 0; k < Set::dimension; ++k) {
         if (Set::velocity[q][k] != 0)
           sums.add(Sums::other, k,
                    -Set::velocity[q][k] *
-                       (left + static_cast<double>(in[q][x]) - (k == 0 ? of_opening(Set::opposite[q], x) : 0)));
+                       (last.left + static_cast<double>(in[q][x]) - (k == 0 ? of_opening(Set::opposite[q], x) : 0)));
       }
     });
   }

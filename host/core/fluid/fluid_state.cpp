@@ -161,8 +161,8 @@ template <class T, class Set>
 LinkMemory FluidState<T, Set>::link_memory(const Ranks<dimension>& ranks) const {
   std::vector<std::array<double, 3>> mine;  // place, and what LinkMemory has of it
   for (int i = 0; links && i < lattice.rows(); ++i) {
-    links->for_links(i, [&](int x, int q, double left, bool, double away) {
-      mine.push_back({place_of_link(i, x, q), left, away});
+    links->for_links(i, [&](int x, int q, const auto& last, bool) {
+      mine.push_back({place_of_link(i, x, q), last.left, last.away});
     });
   }
   std::vector<std::array<double, 3>> all;

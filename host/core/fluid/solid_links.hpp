@@ -50,25 +50,24 @@ class SolidLinks {
     });
   }
 
-  /// Calls function(x, q, left, plane, away) for the links of row i: `left` is what has left along the link in the last
-  /// step, `plane` whether it leads out of the domain, over a wall that lies before the domain's own, not to a solid
-  /// node; `away`: what has left the other way, f'_q.
+  /// What the collisions of the last step made of the populations along a link: f'_w, which has left, and f'_q.
+  struct Last {
+    double left, away;
+  };
+  /// Calls function(x, q, last, plane) for the links of row i; `plane`: it leads out of the domain, over a wall that
+  /// lies before the domain's own, not to a solid node.
   template <class Function>
   void for_links(int i, Function function) const {
     for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) {
       const Link& link = links_[k];
-      function(link.x, link.q, static_cast<double>(link.left), link.plane, static_cast<double>(link.away));
+      function(link.x, link.q, last_of(link), link.plane);
     }
   }
-  /// What the collisions of the last step made of the populations along a link: f'_w and f'_q.
-  struct Last {
-    double left, away;
-  };
   /// Calls function(x, q, last) for the links of row i, whose last step is what that says from now on.
   template <class Function>
   void recall(int i, Function function) {
     for_row(i, [&](Link& link) {
-      Last last{static_cast<double>(link.left), static_cast<double>(link.away)};
+      Last last = last_of(link);
       function(link.x, link.q, last);
       link.left = static_cast<T>(last.left), link.away = static_cast<T>(last.away);
     });
@@ -86,6 +85,7 @@ class SolidLinks {
     signed char q;
     bool plane;
   };
+  static Last last_of(const Link& link) { return {static_cast<double>(link.left), static_cast<double>(link.away)}; }
   template <class Function>
   void for_row(int i, Function function) {
     for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) function(links_[k]);
