@@ -44,7 +44,9 @@ void check_equilibria(const Models& models) {
     for (const PlannedModel& law : laws) {
       if (law.manifest == nullptr) continue;  // that has been said
       // A law that only resists the rate of stretch stores nothing.
-      const bool tells = law.manifest->gives_output("energy") || law.manifest->gives_output("tension_by_rate");
+      const auto gives = [&](const char* output) { return law.manifest->gives_output(output); };
+      const bool tells =
+          gives("energy") || gives("tension_by_rate") || gives("shear_viscosity") || gives("area_viscosity");
       if (law.active() && !tells) refuse(law);
     }
   }

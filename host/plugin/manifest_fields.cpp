@@ -118,8 +118,7 @@ Parameter read_number(const json::Document& document, const std::string& at, con
 }
 
 /// What plugin.h has for surfaces of triangles, and no host does.
-const std::vector<std::string> of_later_hosts = {"invariant_1_rate", "invariant_2_rate", "shear_viscosity",
-                                                 "area_viscosity"};
+const std::vector<std::string> of_later_hosts = {"invariant_1_rate", "invariant_2_rate"};
 
 void check_names(const json::Document& document, const std::string& at, const char* list,
                  const std::vector<std::string>& names, const std::vector<std::string>& known,
@@ -148,9 +147,10 @@ void check_element(const json::Document& document, const Manifest& manifest, con
   }
   if (!element) {
     refuse(document, at + "/gives",
-           surface ? "a membrane law in three dimensions must give \"stress_1\" and \"stress_2\", \"moment\", "
-                     "\"area_tension\", or \"pressure\" and \"surface_tension\""
-                   : "a membrane law must give \"tension\", \"moment\", or \"pressure\" and \"perimeter_tension\"");
+           surface
+               ? "a membrane law in three dimensions must give \"stress_1\" and \"stress_2\", \"shear_viscosity\" or "
+                 "\"area_viscosity\", \"moment\", \"area_tension\", or \"pressure\" and \"surface_tension\""
+               : "a membrane law must give \"tension\", \"moment\", or \"pressure\" and \"perimeter_tension\"");
   }
   const auto check = [&](const char* list, const std::vector<std::string>& names) {
     for (std::size_t i = 0; i < names.size(); ++i) {

@@ -38,6 +38,8 @@ const Quantity& quantity_of(const Manifest& manifest, const std::string& name) {
                                                              {"stress_1", {{{1, 0, -2}}, "N/m"}},
                                                              {"stress_2", {{{1, 0, -2}}, "N/m"}},
                                                              {"area_tension", {{{1, 0, -2}}, "N/m"}},
+                                                             {"shear_viscosity", {{{1, 0, -1}}, "N s/m"}},
+                                                             {"area_viscosity", {{{1, 0, -1}}, "N s/m"}},
                                                              {"surface_tension", {{{1, 0, -2}}, "N/m"}},
                                                              {"energy", {{{1, 0, -2}}, "J/m2"}},
                                                              {"tension_by_stretch", {{{1, 0, -2}}, "N/m"}},
@@ -94,7 +96,8 @@ const std::vector<std::string>& outputs_of(ModelKind kind, int dimension) {
       {"tension", "moment", "pressure", "perimeter_tension", "energy", "tension_by_stretch", "tension_by_rate",
        "moment_by_curvature"},
       {"moment", "pressure", "energy", "moment_by_curvature", "stress_1", "stress_2", "area_tension", "surface_tension",
-       "stress_1_by_1", "stress_1_by_2", "stress_2_by_2", "area_tension_by_ratio"}};
+       "shear_viscosity", "area_viscosity", "stress_1_by_1", "stress_1_by_2", "stress_2_by_2",
+       "area_tension_by_ratio"}};
   static const std::vector<std::string> pair = {"energy", "force", "force_by_distance"};
   if (kind == ModelKind::membrane) return membrane[dimension - 2];
   return kind == ModelKind::collision ? collision : pair;
@@ -104,7 +107,8 @@ std::optional<MembraneElement> element_of(const std::string& name) {
   static const std::map<MembraneElement, std::vector<std::string>> names = {
       {MembraneElement::segment, {"stretch", "stretch_rate", "tension", "tension_by_stretch", "tension_by_rate"}},
       {MembraneElement::triangle,
-       {"invariant_1", "invariant_2", "stress_1", "stress_2", "stress_1_by_1", "stress_1_by_2", "stress_2_by_2"}},
+       {"invariant_1", "invariant_2", "stress_1", "stress_2", "shear_viscosity", "area_viscosity", "stress_1_by_1",
+        "stress_1_by_2", "stress_2_by_2"}},
       {MembraneElement::node,
        {"curvature", "rest_curvature", "moment", "moment_by_curvature", "area_ratio", "area_tension",
         "area_tension_by_ratio"}},

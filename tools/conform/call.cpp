@@ -228,6 +228,8 @@ constexpr std::array membrane_members = {Member<M>{"stretch", &M::stretch, nullp
                                          Member<M>{"stress_2", nullptr, &M::stress_2},
                                          Member<M>{"area_tension", nullptr, &M::area_tension},
                                          Member<M>{"surface_tension", nullptr, &M::surface_tension},
+                                         Member<M>{"shear_viscosity", nullptr, &M::shear_viscosity},
+                                         Member<M>{"area_viscosity", nullptr, &M::area_viscosity},
                                          Member<M>{"stress_1_by_1", nullptr, &M::stress_1_by_1},
                                          Member<M>{"stress_1_by_2", nullptr, &M::stress_1_by_2},
                                          Member<M>{"stress_2_by_2", nullptr, &M::stress_2_by_2},

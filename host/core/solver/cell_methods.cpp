@@ -78,13 +78,15 @@ MembraneForces make_forces(const SolverSetup& setup, Membranes& membranes, const
 
 SurfaceForces make_forces(const BasicSolverSetup<3>& setup, Surfaces& surfaces, const SurfaceSlip* slip) {
   SurfaceForces forces(surfaces, laws_of(setup));
-  if (!setup.semi_implicit) return forces;
   std::vector<KernelResponse> responses;
+  std::vector<double> gain;
   for (const CellType& type : setup.cell_types) {
     const double shift = slip != nullptr ? slip_constants(setup.kernel, type.viscosity_ratio, 3).shift : 0;
     responses.push_back(kernel_response(setup.kernel, shift));
+    gain.push_back(responses.back().gain);
   }
-  forces.take_semi_implicit_steps(surfaces, setup.viscosity(), setup.tension_unit, responses);
+  forces.take_viscosity(surfaces, gain, setup.tension_unit);
+  if (setup.semi_implicit) forces.take_semi_implicit_steps(surfaces, setup.viscosity(), setup.tension_unit, responses);
   return forces;
 }
 

@@ -24,12 +24,8 @@ SurfaceForces::Law SurfaceForces::describe(const MembraneLaw& model) {
     throw std::invalid_argument("\"" + model.id + "\" remembers \"" + model.state[0].name +
                                 "\", which surfaces of triangles have no place for yet");
   }
-  for (const char* viscosity : {"shear_viscosity", "area_viscosity"}) {
-    if (model.writes(viscosity)) {
-      throw std::invalid_argument("\"" + model.id + "\" gives a " + viscosity + ", which surfaces do not have yet");
-    }
-  }
-  const bool triangle = model.writes("stress_1") || model.writes("stress_2");
+  const bool viscous = model.writes("shear_viscosity") || model.writes("area_viscosity");
+  const bool triangle = model.writes("stress_1") || model.writes("stress_2") || viscous;
   const bool cell = model.writes("pressure") || model.writes("surface_tension");
   if (!triangle && !cell && !model.writes("moment") && !model.writes("area_tension")) {
     throw std::invalid_argument("\"" + model.id + "\" is no law of surfaces in three dimensions");
@@ -38,7 +34,7 @@ SurfaceForces::Law SurfaceForces::describe(const MembraneLaw& model) {
   if (model.writes("moment")) element = Law::Element::curvature;
   if (cell) element = Law::Element::cell;
   if (triangle) element = Law::Element::triangle;
-  return {model, element, model.writes("energy")};
+  return {model, element, model.writes("energy"), viscous};
 }
 
 SurfaceForces::Type SurfaceForces::prepare(const RestSurface& rest, const MembraneLaws& laws) {
@@ -96,6 +92,14 @@ void SurfaceForces::take_semi_implicit_steps(Surfaces& surfaces, double viscosit
   }
 }
 
+void SurfaceForces::take_viscosity(Surfaces& surfaces, const std::vector<double>& gain, double tension_unit) {
+  for (std::size_t t = 0; t < types_.size(); ++t) {
+    const auto& laws = types_[t].laws;
+    if (std::none_of(laws.begin(), laws.end(), [](const Law& law) { return law.viscous; })) continue;
+    types_[t].viscosity.emplace(surfaces, static_cast<int>(t), gain[t], tension_unit);
+  }
+}
+
 SurfaceForces::Scratch& SurfaceForces::scratch_of(int first_cell) {
   Scratch& s = scratch_.of(first_cell);
   if (!s.energy.empty()) return s;
@@ -114,6 +118,7 @@ SurfaceForces::Scratch& SurfaceForces::scratch_of(int first_cell) {
   make(s.invariant, triangles);
   make(s.stress, triangles);
   make(s.force, 3 * triangles);
+  s.straining.resize(triangles);
   make(s.law, std::max(triangles, nodes));
   for (auto* array : {&s.turned_length, &s.edge_turn}) array->assign(edges, 0.0);
   for (auto* array : {&s.curvature, &s.area_ratio, &s.node_moment, &s.node_pull}) array->assign(nodes, 0.0);
@@ -137,7 +142,9 @@ SurfaceArrays SurfaceForces::arrays_of(const Type& type, Scratch& s) {
     point_into(arrays.force[k], s.force, k * static_cast<std::size_t>(type.mesh.size));
   arrays.turned_length = s.turned_length.data(), arrays.edge_turn = s.edge_turn.data();
   arrays.node_moment = s.node_moment.data(), arrays.node_pull = s.node_pull.data();
+  point_into(arrays.viscous, s.straining.stress);
   arrays.with_moment = type.curvature, arrays.with_area_pull = type.area;
+  arrays.with_viscosity = type.viscosity.has_value();
   return arrays;
 }
 
@@ -175,6 +182,9 @@ SurfaceForces::Whole SurfaceForces::measure(const Type& type, Nodes nodes, Scrat
 void SurfaceForces::apply(const Type& type, const RestSurface& rest, Scratch& s, Whole& whole, MembraneEnergy* energy) {
   const auto triangles = static_cast<std::size_t>(type.mesh.count), nodes = type.inverse_node_area.size();
   for (auto& stress : s.stress) std::fill(stress.begin(), stress.end(), 0.0);
+  if (type.viscosity) {
+    for (auto& viscosity : s.straining.viscosity) std::fill(viscosity.begin(), viscosity.end(), 0.0);
+  }
   if (type.curvature) std::fill(s.node_moment.begin(), s.node_moment.end(), 0.0);
   if (type.area) std::fill(s.node_pull.begin(), s.node_pull.end(), 0.0);
   for (const Law& law : type.laws) {
@@ -195,6 +205,8 @@ void SurfaceForces::apply(const Type& type, const RestSurface& rest, Scratch& s,
         block.invariant_2 = given("invariant_2", s.invariant[1].data());
         block.stress_1 = wanted("stress_1", s.law[0].data());
         block.stress_2 = wanted("stress_2", s.law[1].data());
+        block.shear_viscosity = wanted("shear_viscosity", s.law[2].data());
+        block.area_viscosity = wanted("area_viscosity", s.law[3].data());
         break;
       case Law::Element::curvature:
         block.count = static_cast<std::uint32_t>(nodes);
@@ -220,13 +232,16 @@ void SurfaceForces::apply(const Type& type, const RestSurface& rest, Scratch& s,
     law.model.compute(&block);
     add(block.stress_1, s.law[0], s.stress[0], triangles);
     add(block.stress_2, s.law[1], s.stress[1], triangles);
+    add(block.shear_viscosity, s.law[2], s.straining.viscosity[0], triangles);
+    add(block.area_viscosity, s.law[3], s.straining.viscosity[1], triangles);
     add(block.moment, s.law[0], s.node_moment, nodes);
     add(block.area_tension, s.law[0], s.node_pull, nodes);
     whole.pressure += pressure;
     whole.surface_tension += surface_tension;
     if (energy == nullptr) continue;
     if (!law.energy) {
-      energy->unknown = law.model.id;
+      // A law that only resists the rate of strain stores nothing.
+      if (!law.viscous || law.model.writes("stress_1") || law.model.writes("stress_2")) energy->unknown = law.model.id;
     } else if (law.element == Law::Element::triangle) {
       energy->tension += weighted_sum(s.energy, rest.triangle_area);
     } else if (law.element == Law::Element::curvature) {
@@ -258,6 +273,7 @@ void SurfaceForces::run(Worker worker, Surfaces& surfaces) {
     const Type& type = types_[cell.type];
     Whole whole = measure(type, type.filter ? look_ahead(surfaces, cell, s) : surfaces.nodes(c), s);
     apply(type, *surfaces.types[cell.type], s, whole, nullptr);
+    if (type.viscosity) type.viscosity->step(type.mesh, arrays_of(type, s), surfaces, cell, s.straining);
     act(type, whole, s);
     const std::array<const double*, 3> of_corners{s.force[0].data(), s.force[1].data(), s.force[2].data()};
     for (int i = 0; i < cell.count; ++i) {
@@ -290,9 +306,14 @@ MembraneEnergy SurfaceForces::energies(const Surfaces& surfaces, const Ranks<3>&
   MembraneEnergySum sum;
   for (const int c : surfaces.own_cells()) {
     const Type& type = types_[surfaces.cells[c].type];
-    Whole whole = measure(type, surfaces.nodes(c), scratch_of(0));
+    Scratch& s = scratch_of(0);
+    Whole whole = measure(type, surfaces.nodes(c), s);
     MembraneEnergy energy;
-    apply(type, surfaces.type_of(c), scratch_of(0), whole, &energy);
+    apply(type, surfaces.type_of(c), s, whole, &energy);
+    if (type.viscosity) {
+      energy.dissipation =
+          type.viscosity->power(type.mesh, arrays_of(type, s), surfaces, surfaces.cells[c], s.straining);
+    }
     sum.add(c, energy);
   }
   return sum.of_all(ranks);

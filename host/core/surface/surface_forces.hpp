@@ -12,6 +12,7 @@
 #include "padded_triangles.hpp"
 #include "surface_filter.hpp"
 #include "surface_kernels.hpp"
+#include "surface_viscosity.hpp"
 #include "surfaces.hpp"
 
 namespace rouleau::core {
@@ -21,8 +22,8 @@ namespace rouleau::core {
 /// on the workers.
 class SurfaceForces {
  public:
-  /// `laws`: of each cell type, as they are in three dimensions. Throws std::invalid_argument for a law that remembers
-  /// or gives a viscosity, which surfaces do not have yet.
+  /// `laws`: of each cell type, as they are in three dimensions. Throws std::invalid_argument for a law that remembers,
+  /// which surfaces do not have yet.
   SurfaceForces(const Surfaces& surfaces, const std::vector<MembraneLaws>& laws);
 
   /// From now on the forces are those of the semi-implicit step (SurfaceFilter), with the laws' own stiffness. What it
@@ -30,6 +31,10 @@ class SurfaceForces {
   /// size of the lattice unit of tension, for what is kept from one stage to the next. `responses`: of each cell type.
   void take_semi_implicit_steps(Surfaces& surfaces, double viscosity, double tension_unit,
                                 const std::vector<KernelResponse>& responses);
+
+  /// Viscosities that laws give are part of the forces from now on (SurfaceViscosity), with the motion of
+  /// surfaces.velocity. `gain`: of each cell type; `tension_unit` as above.
+  void take_viscosity(Surfaces& surfaces, const std::vector<double>& gain, double tension_unit);
 
   /// Pass over cells: sets the forces.
   void run(Worker worker, Surfaces& surfaces);
@@ -49,7 +54,7 @@ class SurfaceForces {
   struct Law {
     MembraneLaw model;
     enum class Element { triangle, curvature, area, cell } element;
-    bool energy;
+    bool energy, viscous;
   };
   /// What all cells of a type share, in the order and with the padding that the loops want.
   struct Type {
@@ -64,15 +69,17 @@ class SurfaceForces {
     std::vector<double> area_share;       // of nodes: rest area over three times the area that area_ratio is over
     std::optional<SurfaceFilter> filter;  // of a semi-implicit step
     std::array<std::size_t, 3> held_force = {0, 0, 0};  // of the filter: in Surfaces::state
+    std::optional<SurfaceViscosity> viscosity;
   };
   /// One worker's arrays, for one cell after another.
   struct Scratch {
     std::vector<double> side[2][3], normal[3], invariant[2], stress[2];
     std::vector<double> force[3];  // on the first corners of all triangles, then on the second and third ones
     std::vector<double> turned_length, edge_turn;
-    std::vector<double> curvature, area_ratio, node_moment, node_pull, law[2], energy;
+    std::vector<double> curvature, area_ratio, node_moment, node_pull, law[4], energy;
     std::vector<double> ahead[3];  // of a semi-implicit step
     PolynomialRoom filtered;
+    SurfaceViscosity::Room straining;
   };
   struct Whole {
     double volume = 0, surface_area = 0, pressure = 0, surface_tension = 0;

@@ -22,11 +22,12 @@ struct SurfaceArrays {
   double *invariant_1, *invariant_2;
   double* normal[3];  ///< twice the area along the outer normal
   const double *stress_1, *stress_2;
+  const double* viscous[3];  ///< viscous stress times area, along the sides: 11, 12, 22 (SurfaceViscosity)
   double* force[3][3];  ///< on the first, second and third node
   // of edges
   const int *edge_node[2], *edge_triangle[2];  ///< nodes a and b; the left and the right triangle
   double *turned_length, *edge_turn;           ///< length times turning angle; turning angle over twice the length
-  bool with_moment, with_area_pull;
+  bool with_moment, with_area_pull, with_viscosity;
   double pressure, surface_tension;
 };
 
@@ -94,6 +95,9 @@ struct ActOnTriangles {
       // d energy / d g, twice: what the sides e1 and e2 are pulled by.
       S a11 = 2.0 * (w1 * b11 + by_det * g22), a12 = 2.0 * (w1 * b12 - by_det * g12);
       S a22 = 2.0 * (w1 * b22 + by_det * g11);
+      if (a.with_viscosity) {
+        a11 += S::load(a.viscous[0] + t), a12 += S::load(a.viscous[1] + t), a22 += S::load(a.viscous[2] + t);
+      }
       S along[3] = {S(0.0), S(0.0), S(0.0)};  // of the normal, on the three corners
       if (a.with_moment) {
         const auto moment = [&](int k) { return gathered<S>(a.node_moment, a.corner[k] + t); };

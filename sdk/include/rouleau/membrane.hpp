@@ -41,6 +41,9 @@ struct Stress {
   S energy;                                                            ///< per rest area
   S stress_1, stress_2;                                                ///< d energy / d I1, d energy / d I2
   S stress_1_by_1 = S(0), stress_1_by_2 = S(0), stress_2_by_2 = S(0);  ///< for steps that are implicit
+  /// Of the surface, never negative. If the manifest's "gives" names them the host adds the stress 2 m (D - tr D/2) + k
+  /// tr D of the rate of strain D, by a step that is stable at any viscosity.
+  S shear_viscosity = S(0), area_viscosity = S(0);
 };
 
 /// One node: in two dimensions with the half segments on both sides, in three with the area that belongs to it.
@@ -108,7 +111,8 @@ inline bool is_of_surface(const rouleau_membrane_block& block) {
                               block.area_ratio, block.volume, block.surface_area}) {
     if (input != nullptr) return true;
   }
-  return false;
+  constexpr std::size_t last = offsetof(rouleau_membrane_block, area_viscosity) + sizeof(block.area_viscosity);
+  return has_field(block.struct_size, last) && (block.shear_viscosity != nullptr || block.area_viscosity != nullptr);
 }
 
 template <class Model>
@@ -168,6 +172,8 @@ struct MembraneLoop {
       give(result.stress_1_by_1, block.stress_1_by_1, first, valid);
       give(result.stress_1_by_2, block.stress_1_by_2, first, valid);
       give(result.stress_2_by_2, block.stress_2_by_2, first, valid);
+      give(result.shear_viscosity, block.shear_viscosity, first, valid);
+      give(result.area_viscosity, block.area_viscosity, first, valid);
     } else if constexpr (takes<Model, S, Patch<S>>()) {
       const PatchTension<S> result =
           evaluate<S>(model, block, first, valid, Patch<S>{take<S>(block.area_ratio, first, valid)});

@@ -10,7 +10,7 @@ using namespace rouleau::test;
 
 namespace {
 
-MembraneLaw viscous(double viscosity) { return law("viscous", {viscosity}); }
+MembraneLaw viscous(double viscosity) { return law("viscous", {viscosity, 0}); }
 MembraneLaw maxwell(double modulus, double relaxation_time) {
   return law("standard-linear-solid", {modulus, relaxation_time});
 }

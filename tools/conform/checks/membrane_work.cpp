@@ -203,9 +203,32 @@ Finding dissipation_of_rates(const Subject& subject) {
   return worst.finding("what depends on the rate takes energy");
 }
 
+/// Of triangles, whose stress by the rate of strain the host makes.
+Finding dissipation_of_viscosities(const Subject& subject) {
+  Random random = subject.random();
+  Worst worst;
+  for (const Trial& trial : trials(subject, random, subject.typical_setting())) {
+    Values inputs = subject.random_inputs(trial.instance, 201, random);
+    const Values outputs = compute(subject, trial.instance, inputs);
+    for (const std::string name : {"shear_viscosity", "area_viscosity"}) {
+      if (!outputs.contains(name)) continue;
+      for (std::size_t i = 0; i < outputs.at(name).size(); ++i) {
+        worst.add(std::max(0.0, -outputs.at(name)[i]), 0, [&] {
+          return "a negative " + name + " at " + place(subject, trial.setting, inputs, i) + trial.words +
+                 " of the size";
+        });
+      }
+    }
+  }
+  return worst.finding("what depends on the rate takes energy");
+}
+
 }  // namespace
 
 Finding check_dissipation(const Subject& subject) {
+  if (subject.manifest().gives_output("shear_viscosity") || subject.manifest().gives_output("area_viscosity")) {
+    return dissipation_of_viscosities(subject);
+  }
   if (!remembers_or_sees_rates(subject)) return Finding::skipped("depends on no rate and has no state");
   if (!can_move(subject)) return Finding::skipped("does not see all coordinates that it gives forces for");
   return subject.manifest().state.empty() ? dissipation_of_rates(subject) : dissipation_of_state(subject);

@@ -57,6 +57,13 @@ double resistance_to_shear(const Subject& subject, const Trial& trial) {
   return trial.setting.units.to_si(2 * stress, plugin::facts_of(plugin::Role::shear_modulus).dimension);
 }
 
+/// Of a triangle at rest, in SI.
+double resistance_to_rate(const Subject& subject, const Trial& trial, plugin::Role role) {
+  Random random = subject.random();
+  const Values now = compute(subject, trial.instance, at_rest(subject, trial, 1, random), look());
+  return trial.setting.units.to_si(now.at("shear_viscosity")[0], plugin::facts_of(role).dimension);
+}
+
 /// An output at distances, lattice units.
 std::vector<double> along(const Subject& subject, const Trial& trial, const char* output,
                           const std::vector<double>& distances) {
@@ -93,7 +100,8 @@ double found(const Subject& subject, const Trial& trial, std::size_t parameter, 
     case plugin::Role::stretching_modulus:
       return stiffness(subject, trial, to_stretch, role);
     case plugin::Role::membrane_viscosity:
-      return stiffness(subject, trial, to_rate, role);
+      return subject.manifest().gives_output("shear_viscosity") ? resistance_to_rate(subject, trial, role)
+                                                                : stiffness(subject, trial, to_rate, role);
     case plugin::Role::bending_modulus:
       return stiffness(subject, trial, to_curvature, role);
     case plugin::Role::cutoff:
@@ -135,7 +143,7 @@ std::string without(const plugin::Manifest& manifest, plugin::Role role) {
     case plugin::Role::stretching_modulus:
       return lacks(to_stretch);
     case plugin::Role::membrane_viscosity:
-      return lacks(to_rate);
+      return manifest.gives_output("shear_viscosity") ? std::string() : lacks(to_rate);
     case plugin::Role::bending_modulus:
       return lacks(to_curvature);
     default:
