@@ -141,8 +141,8 @@ void check_names(const json::Document& document, const std::string& at, const ch
 void check_element(const json::Document& document, const Manifest& manifest, const std::string& at) {
   const bool surface = manifest.dimension() == 3;
   std::optional<MembraneElement> element;
-  for (const char* name : {"tension", "stress_1", "stress_2", "moment", "area_tension", "pressure", "perimeter_tension",
-                           "surface_tension"}) {
+  for (const char* name : {"tension", "stress_1", "stress_2", "shear_viscosity", "area_viscosity", "moment",
+                           "area_tension", "pressure", "perimeter_tension", "surface_tension"}) {
     if (manifest.gives_output(name)) element = element_of(name);
   }
   if (!element) {

@@ -80,6 +80,7 @@ EXPECTED = {
     "moduli/buckles": ("fail", "negative"),
     "clamped/another-sheet": ("fail", "clamped at the stretch"),
     "dissipation/negative-viscosity": ("fail", "negative tension_by_rate"),
+    "dissipation/negative-area-viscosity": ("fail", "negative area_viscosity"),
     "closed-loop/dissipates-as-conservative": ("fail", "a closed cycle takes the work"),
     "degenerate/crushed": ("fail", "energy is"),
     "state-restored/ages-while-looked-at": ("fail", "a time step of 0 changes state.0"),

@@ -140,3 +140,26 @@ TEST_CASE("what a membrane remembers survives a stage with another time step", "
   // Inertia, too, differs by a factor of two. A membrane that had forgotten (tried) is 9 % away.
   CHECK(longer.back() == Approx(same.back()).epsilon(0.01));
 }
+
+TEST_CASE("a sphere relaxes later by its membrane's viscosity over its shear modulus", "[viscous]") {
+  // With area viscosity over viscosity as area modulus over shear modulus, 3 here, the viscous force is mu/G times the
+  // rate of the elastic one, for small strains of any shape: Kelvin and Voigt's solid, and each mode takes mu/G longer.
+  constexpr double modulus = 2.4e-6;  // N/m
+  const auto run = [](double viscosity) {
+    std::ostringstream parameters;
+    parameters << R"({"viscosity": ")" << viscosity << R"( N s/m", "area_viscosity": ")" << 3 * viscosity
+               << R"( N s/m"})";
+    return run_scene(scenes + "/viscous-sphere.json",
+                     {"/cell_types/capsule/membrane/1/parameters=" + parameters.str()});
+  };
+  const SceneRun less = run(3e-9), more = run(12e-9);
+  const auto relaxation_time = [](const SceneRun& run) {
+    const std::vector<double> time = run.column("time_s"), d = run.column("deformation");
+    const std::size_t end = d.size() - 1, begin = end - 8;  // the last 2 ms, when the faster mode is over
+    return (time[end] - time[begin]) / std::log(d[begin] / d[end]);
+  };
+  const double slope = (relaxation_time(more) - relaxation_time(less)) / ((12e-9 - 3e-9) / modulus);
+  std::cout << "sphere: relaxation times " << relaxation_time(less) << " and " << relaxation_time(more)
+            << " s, slope over mu/G " << slope << "\n";
+  CHECK(slope == Approx(1).epsilon(0.02));
+}

@@ -293,6 +293,12 @@ TEST_CASE("a membrane law says in which dimensions it works, and what its elemen
   law["gives"] = {"stress_2", "energy"};
   CHECK(refusal(law).place().pointer == "/needs/1");
   CHECK_THAT(refusal(law).what(), Contains("do not have it yet"));
+  law["needs"] = Json::array();
+  law["gives"] = {"shear_viscosity", "moment"};
+  CHECK_THAT(refusal(law).what(), Contains("split it into two models"));
+  law["gives"] = {"area_viscosity"};
+  law["checks"] = Json::parse(R"([{"inputs": {}, "outputs": {"area_viscosity": 1e-7}}])");
+  CHECK(unit_of(read(), "area_viscosity") == "N s/m");
 
   Json pair = good_manifest();
   pair.erase("dimensions");
