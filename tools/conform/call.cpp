@@ -326,10 +326,8 @@ Values compute_as(const Subject& subject, const plugin::ModelInstance& instance,
   Values outputs;
   for (const auto& [name, array] : arrays.out) {
     auto& values = outputs[name];
-    values.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < count; ++i)
       values.push_back(untouched(array[i]) ? std::bit_cast<double>(unwritten_bits) : static_cast<double>(array[i]));
-    }
   }
   return outputs;
 }
