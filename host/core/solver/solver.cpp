@@ -200,11 +200,13 @@ void Solver<T, Set>::run_rows(Task task, Range rows) {
 template <class T, class Set>
 RowBands Solver<T, Set>::bands() const {
   // Force and velocity of a band's active nodes should stay in a cache of this size until they have been used; about
-  // ten of the lattice are active for one of a membrane.
-  constexpr int cache = 1 << 19, active_per_node = 10;
+  // ten of the lattice are active for one of a membrane. A node is spread once for each band that it reaches: in space
+  // a band has planes for some stencils, a row at a time in the plane (docs/results/speed-2026-11.md).
+  constexpr int cache = 1 << 19, active_per_node = 10, least = dimension == 3 ? 24 : 8;
   const int rows = row_count(setup_.domain.block), columns = setup_.domain.block.size(0);
   const int active = std::clamp(active_per_node * cells_.known_node_count() / rows, 1, columns);  // of a row
-  const int height = std::max(8, cache / (active * static_cast<int>(dimension * sizeof(T))));
+  const int layer = dimension == 3 ? setup_.domain.block.size(1) : 1;                             // rows of a plane
+  const int height = std::max(least * layer, cache / (active * static_cast<int>(dimension * sizeof(T))));
   const EndRows ends = fluid_.end_rows();
   return {.rows = rows, .height = height, .upwards = fluid_.sweeps_up(), .below = ends.below, .above = ends.above};
 }
