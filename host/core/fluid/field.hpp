@@ -12,7 +12,8 @@ namespace rouleau::core {
 
 /// A value for each node of a block, and a halo of `halo` nodes on every side. Rows lie along x and start on 64-byte
 /// boundaries at x = 0, an odd number of these apart: the rows above and behind each other that a stencil reads would
-/// share few places of a cache else.
+/// share few places of a cache else. Of fields that are read and written side by side each takes another `place`, from
+/// 0 to 2: a processor lets a read wait for writes a multiple of 4096 bytes away, where large arrays all begin.
 template <class T, int D>
 class Field {
  public:
@@ -20,13 +21,14 @@ class Field {
 
   Field() = default;
   /// All values zero.
-  explicit Field(const std::array<int, D>& size) : size_(size) {
+  explicit Field(const std::array<int, D>& size, int place = 0) : size_(size) {
     stride_[0] = 1;
     stride_[1] = (((size[0] + 2 * halo + line - 1) / line) | 1) * line;
     for (int k = 2; k < D; ++k) stride_[k] = stride_[k - 1] * (size[k - 1] + 2 * halo);
     const std::ptrdiff_t count = stride_[D - 1] * (size[D - 1] + 2 * halo);
-    storage_ = Storage<T>(static_cast<std::size_t>(count) + line);
-    origin_ = storage_.data() + line;
+    const int before = (1 + 21 * place) * line;  // thirds of 4096 bytes
+    storage_ = Storage<T>(static_cast<std::size_t>(count) + before);
+    origin_ = storage_.data() + before;
     for (int k = 1; k < D; ++k) origin_ += halo * stride_[k];
   }
 

@@ -14,7 +14,7 @@ FluidState<T, Set>::FluidState(const FluidSetting<dimension>& of_fluid)
   std::array<int, dimension> size{};
   for (int k = 0; k < dimension; ++k) size[k] = setting.domain.block.size(k);
   if (setting.membranes) {
-    for (auto& component : force) component = Field<T, dimension>(size);
+    for (int k = 0; k < dimension; ++k) force[k] = Field<T, dimension>(size, k);
   }
   const bool layered = !setting.viscosity_of_rows.empty();
   if (setting.viscosity_contrast || layered) relaxation_rate = Field<T, dimension>(size);
