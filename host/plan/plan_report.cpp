@@ -239,7 +239,7 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
   if (scene.numerics.slip_correction && !scene.numerics.area_correction && plan.has_interactions && !only_repulsion) {
     warnings.emplace_back(
         "numerics.slip_correction with attracting cells: what presses cells together leaks plasma into them "
-        "(docs/accuracy.md); set numerics.area_correction to true as well");
+        "(docs/results/contacts-2d.md); set numerics.area_correction to true as well");
   }
   if (scene.domain.dimension() == 3 && scene.cells.size() > 1 && !scene.numerics.slip_correction) {
     warnings.emplace_back(

@@ -66,7 +66,7 @@ void write_choice(std::ostringstream& out, const NumericsChoice& choice, bool kn
       << (choice.expected.start > 0 ? ", the start of the flow " + formatted(100 * choice.expected.start, "%.2g") +
                                           (knows_developed ? " % (none with \"start\": \"developed\")" : " %")
                                     : "")
-      << " (docs/accuracy.md)\n";
+      << " (docs/auto.md)\n";
 }
 
 void write_output(std::ostringstream& out, const scene::Scene& scene, const OutputEstimate& output) {

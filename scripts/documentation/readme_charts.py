@@ -1,4 +1,4 @@
-"""The two charts of README.md, from the tables of docs/performance.md and docs/accuracy.md: no number is typed twice."""
+"""The two charts of README.md, from the tables of docs/performance.md and of a page of docs/results: no number is typed twice."""
 
 import re
 
@@ -90,7 +90,7 @@ def error_against_time(page):
 def write(root, folder):
     written = []
     with matplotlib.rc_context(STYLE):
-        for name, draw, page in (("speed", speed, "performance"), ("error-against-time", error_against_time, "accuracy")):
+        for name, draw, page in (("speed", speed, "performance"), ("error-against-time", error_against_time, "results/error-against-time-2d")):
             figure = draw((root / f"docs/{page}.md").read_text())
             written.append(folder / f"{name}.svg")
             figure.savefig(written[-1], metadata={"Date": None})

@@ -245,6 +245,11 @@ def quantity_of_a_study(test, block):
     test.assertIsInstance(value, float)
 
 
+def quantity_with_a_bar(test, block):
+    (bar,) = json.loads("{" + block.text + "}").values()
+    test.assertEqual(set(bar), {"value", "error", "how"})
+
+
 def study(test, block):
     """Cut to a second of run time: a study that cannot be read ends with another code."""
     text = json.loads(block.text)
@@ -291,6 +296,9 @@ BLOCKS = [
     ("docs/scene.md", '"domain": {', other_settings),
     ("docs/scene.md", '"fluid": {', other_settings),
     ("docs/scene.md", '"numerics": {', other_settings),
+    ("docs/auto.md", '"domain": {', other_settings),
+    ("docs/auto.md", '"numerics": {', other_settings),
+    ("docs/error-bars.md", '"deformation"', quantity_with_a_bar),
     ("docs/study.md", '{\n  "rouleau_study": 1', study),
     ("docs/study-quantities.md", '{"name": "deformation"', quantity_of_a_study),
     ("docs/three-dimensions.md", '{\n  "rouleau": 1', lambda test, block: test.plan(block.text.split("\n\nrouleau run")[0])),
