@@ -83,15 +83,12 @@ constexpr Observable cell_columns[] = {
     {.name = "y", .unit = "m", .doc = "likewise", .value = cell<&CellSnapshot::y>},
     {.name = "angle",
      .unit = "rad",
-     .doc = "of the long axis of the inertia ellipse against x, counter-clockwise, followed over turns; `nan` "
-            "for a circle (deformation below 1e-6), which has none; in three dimensions of the longer of the two "
-            "axes of the inertia ellipsoid that lie nearest to the plane of x and y",
+     .doc = "of the long axis against x, counter-clockwise, followed over turns; `nan` for a circle",
      .value = cell<&CellSnapshot::angle>,
      .chart = "Angle of the long axis"},
     {.name = "deformation",
      .unit = "",
-     .doc = "(L - B)/(L + B) with the axes L > B of the ellipse that has the enclosed area's second moments; in "
-            "three dimensions of the two axes of the ellipsoid that lie nearest to the plane of x and y",
+     .doc = "(L - B)/(L + B) with the axes L > B of the inertia ellipse",
      .value = cell<&CellSnapshot::deformation>,
      .chart = "Deformation (L − B)/(L + B)"},
     {.name = "area",
@@ -104,8 +101,7 @@ constexpr Observable cell_columns[] = {
      .value = of_outline<&CellSnapshot::perimeter>},
     {.name = "min_gap",
      .unit = "m",
-     .doc = "to the nearest outline of another cell or of any periodic image; `inf` where there is none; in three "
-            "dimensions between nodes and triangles, up to half of the shortest period",
+     .doc = "to the nearest outline of another cell or of any periodic image; `inf` where there is none",
      .value = cell<&CellSnapshot::min_gap>,
      .chart = "Smallest gap to another cell"},
     {.name = "wall_gap",
@@ -226,11 +222,7 @@ constexpr Observable series_columns[] = {
      .value = [](const Row& row) -> Value { return largest_rotation(row.output); }},
     {.name = "relative_viscosity",
      .unit = "",
-     .doc = "where the walls move: mean wall shear stress over viscosity times shear rate (`nan` before they have "
-            "acted); where a force along x drives the flow between walls at rest: flow rate of the suspending "
-            "fluid alone, G H^3/(12 mu), over `flow_rate_m2_per_s`; else, between walls of any shape, and where they "
-            "oscillate, `nan`. Both are "
-            "values of the instant: those of a suspension want a steady state and a mean",
+     .doc = "in shear by the stress on the walls, in a driven flow by the flow rate; `nan` elsewhere",
      .value = output<&Snapshot::relative_viscosity>,
      .chart = "Relative viscosity",
      .has_means = true},
@@ -241,9 +233,7 @@ constexpr Observable series_columns[] = {
      .value = output<&Snapshot::shear_rate>},
     {.name = "wall_stress_lower",
      .unit = "Pa",
-     .doc = "mean shear stress on the lower wall along +x in the last step, in phase with `shear_rate`; of a tube and "
-            "of walls of any shape: force along x on all of it, pressure included, over its area. `nan` without walls "
-            "and before they act",
+     .doc = "mean shear stress on the lower wall along +x in the last step; `nan` without walls and before they act",
      .value = output<&Snapshot::wall_stress_lower>,
      .has_means = true},
     {.name = "wall_stress_upper",
@@ -280,15 +270,12 @@ constexpr Observable series_columns[] = {
      .chart = "Relative mass drift"},
     {.name = "area_leakage_max",
      .unit = "",
-     .doc = "of all cells, the largest change of area, in three dimensions of volume, that "
-            "`numerics.area_correction` put back while the flow strained by about 1, over the area or volume; "
-            "at rest it adds up; `nan` without the correction",
+     .doc = "largest change of a cell's area or volume that `numerics.area_correction` put back; `nan` without it",
      .value = output<&Snapshot::area_leakage_max>,
      .chart = "Largest area kept from leaking, relative"},
     {.name = "flow_rate",
      .unit = "m2/s",
-     .doc = "of a driven channel, per depth: integral of the velocity over the height, in three dimensions over the "
-            "cross-section and divided by the box's size along z; `nan` elsewhere",
+     .doc = "of a driven channel, per depth: integral of the velocity over the cross-section; `nan` elsewhere",
      .value = output<&Snapshot::flow_rate>,
      .has_means = true},
     {.name = "mean_velocity",
@@ -298,11 +285,7 @@ constexpr Observable series_columns[] = {
      .has_means = true},
     {.name = "cell_free_layer_lower",
      .unit = "m",
-     .doc = "mean over the lattice's columns of the distance from the lower wall to the nearest membrane; half the "
-            "height counts in a column where none is nearer, so that few cells give a large value. In a tube, of "
-            "the half of its wall below the axis, along rays from the axis a spacing apart at the wall, where the "
-            "radius counts. Of walls of any shape, over all of their surface, the distance to the nearest node of a "
-            "membrane, where half the local width counts; lower and upper are the same. `nan` without walls or cells",
+     .doc = "mean distance from the lower wall to the nearest membrane; `nan` without walls or cells",
      .value = output<&Snapshot::cell_free_layer_lower>,
      .chart = "Cell-free layer",
      .line = "lower wall",
@@ -321,10 +304,7 @@ constexpr Observable series_columns[] = {
      .has_means = true},
     {.name = "discharge_hematocrit",
      .unit = "",
-     .doc = "of a driven channel, tube or vessel: flux of what the cells enclose along x over the flow rate, both as "
-            "means over the length at this instant: sum over the cells of volume times mean velocity, over the "
-            "integral of the velocity over all fluid, cells included; in two dimensions of areas. `nan` elsewhere, "
-            "without cells and before these have moved",
+     .doc = "of a driven flow: flux of what the cells enclose over the flux of all; `nan` elsewhere and without cells",
      .value = output<&Snapshot::discharge_hematocrit>,
      .chart = "Discharge hematocrit",
      .has_means = true},

@@ -1,6 +1,6 @@
 // Everything that a run's tables hold: one entry for each column. The files cells.csv, aggregates.csv, series.csv and
 // aggregate_sizes.csv, the means in summary.json, the charts of report.html, the units of a study's columns and the
-// lists of columns in docs/output.md all come from here.
+// lists of columns in docs/output-tables.md all come from here.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-"""The lists of columns in docs/output.md, from the program's own table of observables (host/observe/columns.cpp)."""
+"""The lists of columns in docs/output-tables.md, from the program's own table of observables (host/observe/columns.cpp)."""
 
 import json
 import re

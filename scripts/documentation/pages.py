@@ -3,7 +3,8 @@
 CHAPTERS = {
     "Begin": ["README.md", "docs/install.md", "docs/first-run.md", "docs/tutorial.md", "docs/worked-scenes.md",
               "docs/gallery.md", "docs/faq.md", "docs/glossary.md"],
-    "Use": ["docs/scene.md", "docs/three-dimensions.md", "docs/walls.md", "docs/models.md", "docs/output.md", "docs/python.md",
+    "Use": ["docs/scene.md", "docs/three-dimensions.md", "docs/walls.md", "docs/models.md", "docs/output.md",
+            "docs/output-tables.md", "docs/output-frames.md", "docs/output-summary.md", "docs/output-report.md", "docs/python.md",
             "docs/error-bars.md", "docs/auto.md", "docs/simulation.md", "docs/resume.md", "docs/ranks.md", "docs/scaling.md", "docs/rheology.md", "docs/study-quantities.md"],
     "Reference": ["docs/reference/scene.md", "docs/reference/models.md"],
     "Trust the numbers": ["docs/physics.md", "docs/accuracy.md", "docs/study.md", "docs/stability.md", "docs/paper.md",

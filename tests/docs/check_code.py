@@ -306,7 +306,7 @@ BLOCKS = [
     ("docs/three-dimensions.md", '"cells": [', cells_in_space),
     ("docs/three-dimensions.md", '"cell_types": {', "of scenes/capsule-3d.json, which tests/physics runs"),
     ("docs/first-run.md", "import rouleau", lambda test, block: ast.parse(block.text)),
-    ("docs/output.md", "import h5py", lambda test, block: ast.parse(block.text)),
+    ("docs/output-frames.md", "import h5py", lambda test, block: ast.parse(block.text)),
     ("docs/python.md", "import rouleau\nrun", "run by tests/python/check_notebooks.py, block after block"),
     ("docs/python.md", "import rouleau\nfrom", "run by tests/python/check_notebooks.py, block after block"),
     ("docs/python.md", "import numpy\n", "run by tests/python/check_notebooks.py, block after block"),
