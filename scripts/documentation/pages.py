@@ -15,6 +15,7 @@ CHAPTERS = {
     "Logs": ["docs/results/accuracy-2d.md", "docs/results/contacts-2d.md", "docs/results/late-start.md",
              "docs/results/stiff-membranes-2d.md", "docs/results/error-against-time-2d.md", "docs/results/error-bars.md",
              "docs/results/auto-2d.md", "docs/results/auto-3d.md",
+             "docs/results/collision-operators.md", "docs/results/narrow-wells.md",
              "docs/results/studies-3d-2026-11.md", "docs/results/faults-2026-11.md", "docs/results/speed-2026-11.md",
              "docs/results/tests-2026-11.md", "docs/results/conformance-2026-11.md", "docs/results/build-2026-11.md",
              "docs/results/plan-constants.md",
