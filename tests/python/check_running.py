@@ -16,6 +16,8 @@ need("numpy", "pandas")
 
 import numpy  # noqa: E402
 import rouleau  # noqa: E402
+from rouleau.means import mean_of_seeds  # noqa: E402
+from rouleau.sweeping import places_of_seeds  # noqa: E402
 
 SCENE = SOURCE / "scenes/four-cells-shear.json"
 
@@ -302,6 +304,14 @@ class A_sweep(In_a_folder):
                               measure=lambda run: {"turned": run.pivot("angle_rad").iloc[-1].max()})
         self.assertEqual(list(table.columns), ["tau", "status", "turned", "wall_s", "directory"])
 
+    def test_has_numbers_with_their_unit_beside_what_was_given(self):
+        table = rouleau.sweep(small_scene(), {"stages.1.shear_rate": ["10 1/s", "2e1 1/s"], "fluid.density": [1000],
+                                              "fluid.viscosity": ["1.2 cP", "1.2e-3 Pa s"]}, out="sweep", progress=False,
+                              measure=lambda run: {}, **{"stages.1.strain": 0.02})
+        self.assertEqual(list(table["shear_rate_1_per_s"]), [10, 10, 20, 20])
+        self.assertNotIn("viscosity_cP", table)  # in two units: as they were given
+        self.assertEqual(set(table["density"]), {1000})
+
     def test_has_measured_error_bars_where_they_are_asked_for(self):
         table = rouleau.sweep(small_scene(cells=small_scene()["cells"][:1]), {"numerics.tau": [1]}, out="sweep", progress=False,
                               error_bars=True)
@@ -329,6 +339,79 @@ class A_sweep(In_a_folder):
     def test_with_bad_input_ends_with_its_fault(self):
         self.assert_refused('unknown unit "1/x"', rouleau.sweep, small_scene(),
                             {"/stages/1/shear_rate": ["10 1/s", "20 1/x"]}, out="sweep", progress=False)
+
+
+class A_sweep_with_seeds(In_a_folder):
+    SCENE = small_scene(cells=[{"type": "rbc", "random": {"hematocrit": 0.2, "seed": 7}}])
+    OVER = {"/stages/1/shear_rate": ["10 1/s", "40 1/s"]}
+
+    def test_has_means_over_the_seeds_with_both_kinds_of_errors(self):
+        table = rouleau.sweep(self.SCENE, self.OVER, seeds=[1, 2, 3], out="sweep", workers=2, progress=False)
+        self.assertEqual([*zip(table["shear_rate_1_per_s"], table["runs"], table["status"])], [(10, 3, "completed"), (40, 3, "completed")])
+        for _, row in table.iterrows():
+            runs = [rouleau.open(directory) for directory in row["directories"]]
+            self.assertEqual([run.scene.cells[0].random.seed for run in runs], [1, 2, 3])
+            values, errors = zip(*(run.results.loc["relative_viscosity", ["value", "error"]] for run in runs))
+            self.assertAlmostEqual(row["relative_viscosity"], numpy.mean(values), delta=1e-12)
+            self.assertAlmostEqual(row["relative_viscosity_error_between"], numpy.std(values, ddof=1) / 3 ** 0.5, delta=1e-12)
+            self.assertAlmostEqual(row["relative_viscosity_error_within"], numpy.sqrt(numpy.sum(numpy.square(errors))) / 3, delta=1e-12)
+            self.assertGreater(row["relative_viscosity_error_between"], row["relative_viscosity_error_within"])
+            self.assertEqual(row["relative_viscosity_error"], row["relative_viscosity_error_between"])
+            self.assertAlmostEqual(row["relative_viscosity_bar95"], 4.302653 * row["relative_viscosity_error"], delta=1e-6)
+            self.assertTrue(numpy.isnan(row["deformation_error_within"]))
+        written = {path: path.stat().st_mtime_ns for path in pathlib.Path("sweep").glob("*/summary.json")}
+        again = rouleau.sweep(self.SCENE, self.OVER, seeds=[3, 1, 2, 4], out="sweep", progress=False)
+        self.assertEqual(list(again["runs"]), [4, 4])
+        self.assertEqual(written, {path: path.stat().st_mtime_ns for path in written})
+        page = pathlib.Path("sweep/sweep.html").read_text()
+        for words in ("2 combinations, 8 runs", "95 % intervals", "<svg", "relative viscosity", "/report.html"):
+            self.assertIn(words, page)
+        self.assertNotIn("http", page)
+        lines = pathlib.Path("sweep/sweep.csv").read_text().splitlines()
+        self.assertEqual(len(lines), 3)
+        self.assertIn("relative_viscosity_bar95", lines[0])
+        self.assertEqual(len(pathlib.Path("sweep/sweep-runs.csv").read_text().splitlines()), 9)
+
+    def test_finds_every_seed_also_of_changes(self):
+        domain = {"x": {"lower": {"inlet": {"mean_velocity": "1 mm/s", "cells": {"type": "rbc", "hematocrit": 0.2}}}}}
+        self.assertEqual(places_of_seeds({"cells": [{"random": {}}, {"at": [0, 0]}, {"random": {}}], "domain": domain}, {}),
+                         ["/cells/0/random/seed", "/cells/2/random/seed", "/domain/x/lower/inlet/cells/seed"])
+        self.assertEqual(places_of_seeds({}, {"cells.1": {"random": {}}}), ["/cells/1/random/seed"])
+
+    def test_is_refused_where_seeds_change_nothing(self):
+        self.assert_refused("nothing in this scene depends on a seed", rouleau.sweep, small_scene(), self.OVER, seeds=[1, 2])
+        self.assert_refused("seeds are given, too", rouleau.sweep, self.SCENE, {"cells.0.random.seed": [1]}, seeds=[1, 2])
+        self.assert_refused("each of them once", rouleau.sweep, self.SCENE, self.OVER, seeds=[1, 1])
+        self.assert_refused("a seed is -1", rouleau.sweep, self.SCENE, self.OVER, seeds=[-1])
+
+    def test_averages_those_that_completed(self):
+        table = rouleau.sweep(self.SCENE, {"numerics.tau": [1, 30]}, seeds=[1, 2], out="sweep", progress=False,
+                              measure=lambda run: {"x": rouleau.Mean(run.scene.cells[0].random.seed, 0.25)})
+        self.assertEqual([*zip(table["status"], table["runs"])], [("completed", 2), ("diverged", 0)])
+        self.assertEqual((table["x"][0], table["x_error"][0], table["x_error_within"][0]), (1.5, 0.5, 0.125 * 2 ** 0.5))
+        self.assertTrue(numpy.isnan(table["x"][1]))
+
+
+class Means_over_seeds(Case):
+    def test_have_bars_that_hold_what_single_runs_do_not_know(self):
+        mean = mean_of_seeds([1.963, 2.376], [0.005, 0.009])
+        self.assertAlmostEqual(mean.value, 2.1695, delta=1e-12)
+        self.assertAlmostEqual(mean.error, 0.2065, delta=1e-12)
+        self.assertLess(mean.value - mean.bar95, 1.963)
+        self.assertGreater(mean.value + mean.bar95, 2.376)
+        self.assertEqual(mean_of_seeds([2.0], [0.1])[1], 0.1)
+        self.assertTrue(numpy.isnan(mean_of_seeds([2.0], [0.1]).bar95))
+
+    def test_hold_the_true_mean_in_95_of_100_cases(self):
+        noise = numpy.random.default_rng(20261130)
+        for count, between, within in ((2, 1.0, 0.02), (3, 1.0, 1.0), (5, 0.0, 1.0), (8, 0.3, 0.1)):
+            held = 0
+            for _ in range(2000):
+                means = noise.normal(0, between, count) + noise.normal(0, within, count)
+                found = mean_of_seeds(means.tolist(), [within] * count)
+                held += abs(found.value) <= found.bar95
+            print(f"{count} seeds, spread {between}, error of a run {within}: {held / 20:.1f} % of 2000 bars hold the mean")
+            self.assertGreater(held / 2000, 0.935)
 
 
 if __name__ == "__main__":
