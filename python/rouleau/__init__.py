@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .comparing import Comparison as Comparison, compare as compare
     from .errors import Error as Error, Fault as Fault
+    from .means import SeedMean as SeedMean, Statistics as Statistics, mean_of_seeds as mean_of_seeds, statistics as statistics
     from .potentials import Potential as Potential, potential as potential
     from .reading import Cell as Cell, Field as Field, Frame as Frame, Mean as Mean, Run as Run, Stage as Stage
     from .reading import mean_and_error as mean_and_error, open as open
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 _HOME = {
     "Cell": "reading", "compare": "comparing", "Comparison": "comparing", "Error": "errors", "Fault": "errors",
     "Field": "reading", "FluidField": "simulation", "Frame": "reading", "mask": "shapes", "Mean": "reading", "mean_and_error": "reading",
+    "mean_of_seeds": "means", "SeedMean": "means", "Statistics": "means", "statistics": "means",
     "open": "reading", "outline": "shapes", "Plan": "running", "plan": "running", "plugins": "running", "polygons": "shapes",
     "Potential": "potentials", "potential": "potentials", "Progress": "running", "Run": "reading", "run": "running",
     "Simulation": "simulation", "Stage": "reading", "sweep": "sweeping", "vessel": "shapes",

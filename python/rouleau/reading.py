@@ -11,6 +11,7 @@ import pathlib
 from typing import TYPE_CHECKING, Any, NamedTuple, Sequence
 
 from .errors import Error, Fault
+from .means import Statistics, statistics
 
 if TYPE_CHECKING:
     import h5py
@@ -214,6 +215,18 @@ class Outputs:
         own = self._own(series)  # a stage begins with the last output of the one before it
         return mean_and_error(series[column][own].to_numpy(), parts, times[own], times[0] + begin * (times[-1] - times[0]))
 
+    def statistics(self, column: str) -> Statistics:
+        """Where a column became steady, and its mean from there with an error that knows that values follow each other
+        (`rouleau.statistics`): of series.csv, or of cells.csv the mean over the cells. Of a run its last stage. What is not
+        steady has no mean."""
+        series = self.series
+        if column in series or column not in self.cells:
+            table = _with_columns(series, "series.csv", column)
+        else:
+            table = self.cells.groupby(["step", "time_s", "stage_name"], sort=False)[column].mean().reset_index()
+        table = table[self._own(table)]
+        return statistics(table[column].tolist(), table["time_s"].tolist())
+
     def _own(self, series: pandas.DataFrame) -> pandas.Series[bool]:
         return series["step"] >= -1
 
@@ -301,6 +314,10 @@ class Run(Outputs):
             raise Error(Fault(f'there is no stage "{name}"; there is ' + (", ".join(self.stages) or "none yet"), "",
                               str(self.directory / "series.csv")))
         return Stage(self, name, float(series["step"][max(rows[0] - 1, 0)]), float(series["step"][rows[-1]]))
+
+    def statistics(self, column: str) -> Statistics:
+        """Outputs.statistics of the last stage."""
+        return self.stage(self.stages[-1]).statistics(column)
 
     @property
     def error_bars(self) -> pandas.DataFrame:

@@ -15,7 +15,7 @@ import threading
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Iterator, Mapping, NamedTuple, Sequence
 
 from .errors import Error, Fault
-from .means import mean_of_seeds
+from .means import SeedMean, Statistics, mean_of_seeds
 from .reading import Mean, Run
 from .running import FAILED, Progress, ProgressLike, shown, simulate
 from .scenes import SceneLike, as_json, hashes_of_files, options_of, pointer_of, text_of, whole
@@ -41,7 +41,7 @@ def sweep(scene: SceneLike, over: Mapping[str, Sequence[Any]], *, seeds: Sequenc
     Columns: a value for each key, under its last word ("depth") where that is unique, and where all values have one unit
     the numbers beside it ("depth_J_per_m2"); `status` ("completed", "diverged", "interrupted"); for each quantity of
     `Run.results` its value, in SI, and `QUANTITY_error`; `wall_s`; `directory`. With `measure`, what that function makes
-    of a run stands in place of `Run.results`; a value may be a Mean. With `error_bars` errors are measured, which takes
+    of a run stands in place of `Run.results`; a value may be a Mean or a Statistics. With `error_bars` errors are measured, which takes
     40 % longer; without, they are standard errors of means in time. A run that diverged has nan.
 
     With `seeds` a row has the mean over the completed runs, whose number is `runs`. `QUANTITY_error` is the larger of two
@@ -285,7 +285,7 @@ def _measured(made: Run, measure: Callable[[Run], Mapping[str, Any]] | None) -> 
     columns: dict[str, Any] = {}
     if measure is not None:
         for name, value in measure(made).items():
-            if isinstance(value, Mean):
+            if isinstance(value, (Mean, SeedMean, Statistics)):
                 columns.update({name: value.value, f"{name}_error": value.error})
             else:
                 columns[name] = value

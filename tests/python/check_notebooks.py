@@ -83,6 +83,9 @@ class The_page(Case):
         pathlib.Path("scenes").mkdir()
         scene = small_scene(stages=[{"name": "aggregate", "duration": "0.05 s"}, {**SHEAR[0], "strain": 2}])
         pathlib.Path("scenes/four-cells-shear.json").write_text(json.dumps(scene))
+        pathlib.Path("scenes/rheology").mkdir()
+        random = small_scene(cells=[{"type": "rbc", "random": {"hematocrit": 0.2, "seed": 1}}], stages=SHEAR)
+        pathlib.Path("scenes/rheology/suspension.json").write_text(json.dumps(random))
         drawing = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 200"><path d="M0 20H400V180H0Z M150 80h60v40h-60Z"/></svg>'
         pathlib.Path("chip.svg").write_text(drawing)
         names = {}
