@@ -14,6 +14,7 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from .calibrating import Calibration as Calibration, calibrate as calibrate
     from .comparing import Comparison as Comparison, compare as compare
     from .errors import Error as Error, Fault as Fault
     from .means import SeedMean as SeedMean, Statistics as Statistics, mean_of_seeds as mean_of_seeds, statistics as statistics
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from .sweeping import sweep as sweep
 
 _HOME = {
+    "calibrate": "calibrating", "Calibration": "calibrating",
     "Cell": "reading", "compare": "comparing", "Comparison": "comparing", "Error": "errors", "Fault": "errors",
     "Field": "reading", "FluidField": "simulation", "Frame": "reading", "mask": "shapes", "Mean": "reading", "mean_and_error": "reading",
     "mean_of_seeds": "means", "SeedMean": "means", "Statistics": "means", "statistics": "means",

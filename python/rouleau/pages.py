@@ -28,6 +28,7 @@ class Line:
     bars: Sequence[float] = ()
     joined: bool = True
     points: bool = True
+    colour: int | None = None  # of COLOURS; None: one after another
 
 
 def number(value: Any, digits: int = 4) -> str:
@@ -109,7 +110,7 @@ def chart(lines: Sequence[Line], x_label: str, y_label: str, level: tuple[float,
     drawn.append(text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 8, x_label, "middle"))
     drawn.append(text(0, 0, y_label, "middle", f' transform="translate(14 {(HEIGHT - BELOW + TOP) / 2:.0f}) rotate(-90)"'))
     for k, line in enumerate(lines):
-        colour = COLOURS[k % len(COLOURS)]
+        colour = COLOURS[(k if line.colour is None else line.colour) % len(COLOURS)]
         places = [(px(x), py(y)) for x, y in zip(line.x, line.y) if math.isfinite(x) and math.isfinite(y)]
         if line.joined and len(places) > 1:
             way = "L".join(f"{x:.1f} {y:.1f}" for x, y in sorted(places))

@@ -54,7 +54,7 @@ def sweep(scene: SceneLike, over: Mapping[str, Sequence[Any]], *, seeds: Sequenc
     """
     import pandas
     keys = list(over)
-    names = _short_names(keys)
+    names = short_names(keys)
     places = places_of_seeds(scene, changes, keys) if seeds is not None else []
     seed_numbers = [whole("a seed", seed, 0, 2 ** 32 - 1) for seed in seeds] if seeds is not None else []
     if seeds is not None and (not seed_numbers or len(set(seed_numbers)) != len(seed_numbers)):
@@ -296,7 +296,7 @@ def _measured(made: Run, measure: Callable[[Run], Mapping[str, Any]] | None) -> 
     return columns
 
 
-def _short_names(keys: list[str]) -> list[str]:
+def short_names(keys: list[str]) -> list[str]:
     """The last word of each key, or the whole key where another has the same."""
     last = [pointer_of(key).rsplit("/", 1)[1] for key in keys]
     return [word if last.count(word) == 1 else key for key, word in zip(keys, last)]
