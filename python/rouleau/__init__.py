@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from .shapes import mask as mask, outline as outline, polygons as polygons, vessel as vessel
     from .sweeping import sweep as sweep
 
+__version__ = "0.2.0"
+
 _HOME = {
     "calibrate": "calibrating", "Calibration": "calibrating",
     "Cell": "reading", "compare": "comparing", "Comparison": "comparing", "Error": "errors", "Fault": "errors",

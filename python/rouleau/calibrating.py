@@ -37,7 +37,8 @@ GRID = {1: 2001, 2: 71, 3: 25}  # places along each axis
 LOGARITHMIC_FROM = 10.0  # ratio of the bounds
 FLAT = 0.8  # share of its range that a parameter's 95 % interval may have; all is alike where it has 0.95
 MISFIT = 3.5  # standard errors
-SURROGATE_SHARE = 0.1  # of an observation's variance that may come from the surrogate
+SURROGATE_SHARE = 0.05  # of an observation's variance that may come from the surrogate
+LEAST_MORE = 4  # points beside the first, for each parameter: fewer say too little about how bent a function is
 DRAWS = 64
 
 
@@ -105,7 +106,7 @@ def calibrate(scene: Union[SceneLike, Simulator], parameters: Mapping[str, tuple
     `parameters`: for each key or JSON pointer the lowest and the highest value, in one unit: `{"/interactions/0/parameters/
     depth": ("1e-8 J/m2", "1e-5 J/m2")}`. Where positive bounds differ tenfold or more the logarithm is searched.
     `observed`: for each name (value, standard error), in SI. A name is a path in summary.json with dots ("dimensionless.capillary",
-    "rheology.-1.means.relative_viscosity"), or a quantity of `Run.results`; or any word, with a function of the run as third
+    "rheology.-1.means.relative_viscosity"; -1 is the last of a list), or a quantity of `Run.results`; or any word, with a function of the run as third
     entry: (value, error, function), which gives a number, a Mean or a Statistics. In place of a scene there may be a
     function of the parameters' numbers to {name: number or (value, error)}.
 
@@ -153,7 +154,7 @@ def calibrate(scene: Union[SceneLike, Simulator], parameters: Mapping[str, tuple
             compute([[bracket[0] + (bracket[1] - bracket[0]) * k / (room + 1)] for k in range(1, room + 1)])
         else:
             belief = _Belief(points, goals, len(axes))
-            if belief.is_flat_whatever_comes() or (before > len(_first(len(axes))) and belief.is_sure()):
+            if belief.is_flat_whatever_comes() or (before >= len(_first(len(axes))) + LEAST_MORE * len(axes) and belief.is_sure()):
                 break
             compute(belief.next_places(room))
         if len(points) == before:
@@ -194,8 +195,10 @@ def quantity_of(run: Run, path: str) -> Any:
     for word in path.split("."):
         if isinstance(here, Mapping) and word in here:
             here = here[word]
-        elif isinstance(here, list) and word.lstrip("-").isdigit() and -len(here) <= int(word) < len(here):
-            here = here[int(word)]
+        elif isinstance(here, list) and word.lstrip("-").isdigit():
+            here = here[int(word)] if -len(here) <= int(word) < len(here) else None
+        elif here is None:
+            return math.nan  # what did not happen in this run
         else:
             results = run.results
             if path in results.index:

@@ -24,11 +24,11 @@ class Comparison:
     #: with the JSON pointer as index: the values `a` and `b` of the scenes where they are not the same as written
     scenes: pandas.DataFrame
 
-    def plot(self, column: str = "deformation", over: str | None = None, axes: Any = None) -> Any:
+    def plot(self, column: str = "deformation", over: str | None = None, axes: Any = None, ax: Any = None) -> Any:
         """Draws a column of both runs over each other, `a` blue and `b` orange, and returns matplotlib's Axes. Arguments as
         in Outputs.plot."""
         from matplotlib.lines import Line2D
-        drawn = self.a.plot(column, over=over, axes=axes)
+        drawn = self.a.plot(column, over=over, axes=axes, ax=ax)
         before = len(drawn.lines), len(drawn.collections)
         self.b.plot(column, over=over, axes=drawn)
         for artist in (*drawn.lines, *drawn.collections):
@@ -37,6 +37,9 @@ class Comparison:
             artist.set_color("C1")
         drawn.legend([Line2D([], [], color="C0"), Line2D([], [], color="C1")], [self.a.directory.name, self.b.directory.name])
         return drawn
+
+    def _repr_html_(self) -> str:
+        return f"<div>{self.quantities._repr_html_()}{self.scenes._repr_html_()}</div>"
 
 
 def compare(a: Run | str | os.PathLike[str], b: Run | str | os.PathLike[str]) -> Comparison:

@@ -155,6 +155,46 @@ def plot_frame(frame: Any, colour: str, field: str | None, axes: Any) -> Any:
     return axes
 
 
+def plot_frame_3d(frame: Any, colour: str, axes: Any, wrapped: bool) -> Any:
+    """Frame.plot3d"""
+    import itertools
+
+    import numpy
+    from matplotlib import pyplot
+    if colour not in ("cell", "aggregate", "tension"):
+        raise Error(f'colour is "cell", "aggregate" or "tension", not {colour!r}')
+    if axes is None:
+        axes = pyplot.figure(constrained_layout=True).add_subplot(projection="3d")
+    elif not hasattr(axes, "plot_trisurf"):
+        raise Error(Fault("these axes are flat", 'make them with figure.add_subplot(projection="3d")'))
+    largest = 1e6 * max((float(abs(cell.tension).max()) for cell in frame.cells), default=0.0) or 1.0
+    box = [1e6 * length for length in frame.box_m or frame.size_m]
+    box += [0.0] * (3 - len(box))
+    surface = None
+    for cell in frame.cells:
+        places = 1e6 * (cell.wrapped_into(frame.box_m or frame.size_m) if wrapped else cell.outline)
+        shade = f"C{(cell.number if colour == 'cell' else cell.aggregate) % 10}"
+        if cell.triangles is None:
+            closed = numpy.vstack([places, places[:1]])
+            axes.plot(closed[:, 0], closed[:, 1], numpy.zeros(len(closed)), color=shade)
+        elif colour == "tension":
+            surface = axes.plot_trisurf(*places.T, triangles=cell.triangles, cmap="coolwarm", vmin=-largest, vmax=largest, linewidth=0)
+            surface.set_array(1e6 * cell.tension[cell.triangles].mean(axis=1))
+        else:
+            axes.plot_trisurf(*places.T, triangles=cell.triangles, color=shade, linewidth=0, shade=True)
+    if surface is not None:
+        axes.figure.colorbar(surface, ax=axes, label="tension (µN/m)", shrink=0.6)
+    corners = list(itertools.product((0, 1), repeat=3 if box[2] else 2))
+    for a, b in itertools.combinations(corners, 2):
+        if sum(x != y for x, y in zip(a, b)) == 1:
+            axes.plot(*[[length * ends[0], length * ends[1]] for length, ends in zip(box, zip((*a, 0), (*b, 0)))], color="0.6", linewidth=0.8)
+    flat = 0.3 * max(box)
+    axes.set(xlim=(0, box[0]), ylim=(0, box[1]), zlim=(0, box[2]) if box[2] else (-flat / 2, flat / 2), xlabel="x (µm)", ylabel="y (µm)",
+             zlabel="z (µm)", title=f"strain {frame.strain:.2f}, {frame.time_s:.3g} s")
+    axes.set_box_aspect((box[0], box[1], box[2] or flat))
+    return axes
+
+
 class Animation:
     """Frames one after another. A notebook shows it as the last value of a cell."""
 

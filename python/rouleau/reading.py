@@ -98,6 +98,19 @@ class Cell:
         moved[:, 0] -= size_m[0] * math.floor(float(moved[:, 0].mean()) / size_m[0])
         return moved
 
+    def wrapped_into(self, box_m: Sequence[float]) -> Floats:
+        """The nodes [nodes, 2 or 3] in m, moved as a whole so that their centre lies in the periodic box of `box_m`."""
+        moved = self.outline.copy()
+        for axis, length in enumerate(box_m[:moved.shape[1]]):
+            moved[:, axis] -= length * math.floor(float(moved[:, axis].mean()) / length)
+        return moved
+
+    def to_trimesh(self) -> Any:
+        """The surface as trimesh.Trimesh, in m, not wrapped into the box. Throws Error for an outline, and where the
+        optional package trimesh is missing."""
+        from . import exporting
+        return exporting.to_trimesh(self)
+
     def section(self) -> Cell:
         """In three dimensions the outline in which the plane across z through the surface's middle cuts it (of several the
         longest), as a cell of two."""
@@ -156,6 +169,7 @@ class Frame:
     cells: list[Cell]  #: those that are there, by their numbers
     fields: dict[str, Field]  #: by name: velocity, density, viscosity, vorticity; empty where none were due
     walls: Sequence[Floats] = ()  #: polygons [n, 2] in m around walls that are no planes, which lie at their left; in three dimensions around those that the plane across z through the middle cuts
+    box_m: tuple[float, ...] = ()  #: of the box along every axis, m: three lengths in three dimensions
 
     def field(self, name: str) -> Field:
         """One of the fields. Throws Error where it was not written."""
@@ -165,11 +179,56 @@ class Frame:
                               "ask for it in the scene's output.fields, or for run.frame(..., fields=True)"))
         return self.fields[name]
 
-    def plot(self, colour: str = "cell", field: str | None = None, axes: Any = None) -> Any:
-        """Draws outlines and walls in um and returns matplotlib's Axes. `colour`: "cell", "aggregate" or "tension" (uN/m, with a
-        bar). `field`: one that is drawn under them; of a velocity, its magnitude."""
+    def plot(self, colour: str | None = None, field: str | None = None, axes: Any = None, *, color: str | None = None,
+             ax: Any = None) -> Any:
+        """Draws outlines and walls in um and returns matplotlib's Axes. `colour`: "cell" (None), "aggregate" or "tension" (uN/m, with
+        a bar). `field`: one that is drawn under them; of a velocity, its magnitude. `color` and `ax` are other names of
+        `colour` and `axes`. In three dimensions each cell is cut through its own middle across z: `plot3d` shows surfaces."""
         from . import drawing
-        return drawing.plot_frame(self, colour, field, axes)
+        return drawing.plot_frame(self, either("colour", colour, "color", color) or "cell", field, either("axes", axes, "ax", ax))
+
+    def plot3d(self, colour: str | None = None, axes: Any = None, *, wrapped: bool = True, color: str | None = None, ax: Any = None) -> Any:
+        """Draws the cells in space, in um, with the box, and returns matplotlib's three-dimensional Axes. `colour`: "cell" (None),
+        "aggregate" or "tension". `wrapped`: each cell is moved as a whole, its centre into the box. Outlines lie in the plane z = 0."""
+        from . import drawing
+        return drawing.plot_frame_3d(self, either("colour", colour, "color", color) or "cell", either("axes", axes, "ax", ax), wrapped)
+
+    def to_pyvista(self, wrapped: bool = True) -> Any:
+        """All cells as one pyvista.PolyData in m: triangles, or lines of outlines, with the tension (and curvature) of each
+        point and the `cell` and `aggregate` of each triangle. Throws Error where the optional package pyvista is missing."""
+        from . import exporting
+        return exporting.to_pyvista(self, wrapped)
+
+    def to_trimesh(self) -> list[Any]:
+        """Each cell as trimesh.Trimesh (Cell.to_trimesh), by their numbers."""
+        return [cell.to_trimesh() for cell in self.cells]
+
+    def write(self, path: str | os.PathLike[str], wrapped: bool = True) -> pathlib.Path:
+        """Writes all cells in m, whole or not at all, and returns the path: .vtp (ParaView, VTK; also outlines), .ply or .stl.
+        `wrapped`: each cell is moved as a whole, its centre into the box."""
+        from . import exporting
+        return exporting.write_frame(self, pathlib.Path(path), wrapped)
+
+    def _facts(self) -> list[tuple[str, str]]:
+        nodes = {len(cell.outline) for cell in self.cells}
+        return [("stage", self.stage), ("strain", f"{self.strain:.4g}"), ("time", f"{self.time_s:.4g} s"),
+                ("cells", f"{len(self.cells)}" + (f" of {'or '.join(f'{n} ' for n in sorted(nodes)[:3])}nodes" if nodes else "")),
+                ("box", " x ".join(f"{1e6 * length:.4g}" for length in self.box_m or self.size_m) + " um"),
+                ("fields", ", ".join(self.fields))]
+
+    def __repr__(self) -> str:
+        return "<frame: " + ", ".join(f"{name} {value}" for name, value in self._facts() if value) + ">"
+
+    def _repr_html_(self) -> str:
+        from . import exporting
+        return exporting.card("Frame", self._facts())
+
+
+def either(name: str, value: Any, other: str, alias: Any) -> Any:
+    """The value of an argument that has two names. Throws Error where both are given."""
+    if value is not None and alias is not None:
+        raise Error(Fault(f"{name} and {other} are given, and mean the same", "give one of them"))
+    return alias if value is None else value
 
 
 class Outputs:
@@ -230,12 +289,20 @@ class Outputs:
     def _own(self, series: pandas.DataFrame) -> pandas.Series[bool]:
         return series["step"] >= -1
 
-    def plot(self, *columns: str, over: str | None = None, axes: Any = None) -> Any:
+    def plot(self, *columns: str, over: str | None = None, axes: Any = None, ax: Any = None) -> Any:
         """Draws columns of cells.csv (a line for each cell; beyond twelve the mean and the range) or series.csv and
         returns matplotlib's Axes, of several columns a list. Without columns: cells at four instants, deformation and
-        gaps. `over`: "strain" or "time_s"; left out, the strain where it grows. Lengths are drawn in um, angles in degrees."""
+        gaps. `over`: "strain" or "time_s"; left out, the strain where it grows. Lengths are drawn in um, angles in degrees.
+        `ax` is another name of `axes`."""
         from . import drawing
-        return drawing.plot(self, list(columns), over, axes)
+        return drawing.plot(self, list(columns), over, either("axes", axes, "ax", ax))
+
+    def to_xarray(self, outlines: bool = False) -> Any:
+        """series.csv over `time` and cells.csv over `time` and `cell` as xarray.Dataset, with the unit of each variable in its
+        attribute `units`, nan where a cell is not there. `outlines`: also the nodes of every frame over `frame`, `cell`, `node`
+        and `axis`, and their tension. Throws Error where the optional package xarray is missing."""
+        from . import exporting
+        return exporting.to_xarray(self, outlines)
 
 
 class Stage(Outputs):
@@ -410,16 +477,30 @@ class Run(Outputs):
         distance = abs(have - wanted)
         return self._frame(frames.iloc[int((distance <= distance.min()).nonzero()[0][-1])])
 
-    def animate(self, most_frames: int = 60, colour: str = "cell", field: str | None = None) -> Animation:
+    def animate(self, most_frames: int = 60, colour: str | None = None, field: str | None = None, *, color: str | None = None) -> Animation:
         """An animation that plays in a notebook, of at most `most_frames` frames, evenly chosen; its `save` writes an
-        HTML, GIF or MP4 file. `colour` and `field` as in Frame.plot."""
+        HTML, GIF or MP4 file. `colour`, `color` and `field` as in Frame.plot."""
         from . import drawing
-        return drawing.Animation(self, most_frames, colour, field)
+        return drawing.Animation(self, most_frames, either("colour", colour, "color", color) or "cell", field)
 
     def __repr__(self) -> str:
         summary = self.summary
         words = summary.get("outcome") or f"{summary.status} at step {summary.steps}, strain {summary.strain:.4g}"
         return f"<run {self.directory}: {words}>"
+
+    def _repr_html_(self) -> str:
+        from . import exporting
+        from .pages import table, with_bar
+        summary = self.summary
+        facts = [("title", str(summary.get("title", "") or self.scene.get("title", ""))), ("outcome", str(summary.get("outcome", ""))),
+                 ("status", str(summary.status)), ("strain", f"{summary.get('strain', 0):.4g}"), ("steps", str(summary.get("steps", "")))]
+        try:
+            results = self.results
+        except (Error, LookupError):  # there is none yet
+            return exporting.card(str(self.directory), facts)
+        shown = table(["quantity (SI)", "value", "how"], [[name, with_bar(float(row["value"]), float(row["error"])), row["how"]]
+                                                          for name, row in results.iterrows()])
+        return exporting.card(str(self.directory), facts, shown)
 
     def _json(self, name: str) -> Any:
         path = self.directory / name
@@ -481,7 +562,7 @@ class Run(Outputs):
                 places = [begin[k] + spacing[k] * numpy.arange(values.shape[axes - 1 - k]) for k in range(axes)]
                 fields[name] = Field(values, _text(data.attrs["unit"]), *places)
         return Frame(int(row["step"]), float(row["time_s"]), float(row["strain"]), str(row["stage_name"]),
-                     (size[0], size[1]), cells, fields, self._walls())
+                     (size[0], size[1]), cells, fields, self._walls(), size)
 
     def _walls(self) -> list[Floats]:
         """Frame.walls, which the first file of frames has."""

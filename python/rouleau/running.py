@@ -187,6 +187,14 @@ class Plan(Section):
         import pandas
         return pandas.DataFrame(self[name])
 
+    def _repr_html_(self) -> str:
+        from .exporting import card
+        from .pages import number, table
+        limits = table(["limit", "value", "limit", "margin"], [[limit.name, number(limit.value), number(limit.limit),
+                       "" if limit.margin is None else number(limit.margin)] for limit in self.limits])
+        facts = [(name.replace("_", " "), number(value)) for name, value in self.dimensionless.items() if isinstance(value, (int, float))]
+        return card(repr(self).strip("<>"), [*facts, ("estimated time", f"{self.estimate.wall_s:.3g} s")], limits)
+
     def __repr__(self) -> str:
         beyond = [limit.name for limit in self.limits if limit.margin is not None and limit.margin < 1]
         return f"<plan of {self.title or 'a scene'}: " + ("beyond its limits: " + ", ".join(beyond) if beyond else "within all limits") + ">"

@@ -15,7 +15,7 @@ import tempfile
 import unittest
 
 SOURCE = pathlib.Path(sys.argv[1])
-FILES = ("CMakeLists.txt", "CITATION.cff", "codemeta.json", "CHANGELOG.md", "scripts/release")
+FILES = ("CMakeLists.txt", "CITATION.cff", "codemeta.json", "CHANGELOG.md", "python/rouleau/__init__.py", "scripts/release")
 VERSION = "98.7.6"  # of no release
 
 
@@ -24,7 +24,7 @@ class Release(unittest.TestCase):
         self.root = pathlib.Path(tempfile.mkdtemp(prefix="rouleau-release-"))
         self.addCleanup(shutil.rmtree, self.root)
         for name in FILES:
-            (self.root / name).parent.mkdir(exist_ok=True)
+            (self.root / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(SOURCE / name, self.root / name)
         self.git("init", "--quiet")
         self.commit()
