@@ -183,7 +183,7 @@ def plot_frame_3d(frame: Any, colour: str, axes: Any, wrapped: bool) -> Any:
         else:
             axes.plot_trisurf(*places.T, triangles=cell.triangles, color=shade, linewidth=0, shade=True)
     if surface is not None:
-        axes.figure.colorbar(surface, ax=axes, label="tension (µN/m)", shrink=0.6)
+        axes.figure.colorbar(surface, ax=axes, label="tension (µN/m)", shrink=0.6, pad=0.15)
     corners = list(itertools.product((0, 1), repeat=3 if box[2] else 2))
     for a, b in itertools.combinations(corners, 2):
         if sum(x != y for x, y in zip(a, b)) == 1:

@@ -128,8 +128,9 @@ def text_of(scene: str | os.PathLike[str]) -> str:
 def _files(value: Any) -> Iterator[str]:
     for part in value.values() if isinstance(value, Mapping) else value if isinstance(value, (list, tuple)) else ():
         yield from _files(part)
-    if isinstance(value, Mapping) and isinstance(value.get("file"), (str, os.PathLike)):
-        yield os.fspath(value["file"])
+    if isinstance(value, Mapping):  # a file, or the layers of a picture
+        named = value.get("file")
+        yield from (os.fspath(name) for name in (named if isinstance(named, (list, tuple)) else [named]) if isinstance(name, (str, os.PathLike)))
 
 
 def _from_here(value: Any, key: str = "") -> Any:
@@ -137,7 +138,7 @@ def _from_here(value: Any, key: str = "") -> Any:
     if isinstance(value, Mapping):
         return {name: _from_here(part, name) for name, part in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_from_here(part, "file" if key == "plugin_dirs" else "") for part in value]
+        return [_from_here(part, "file" if key in ("plugin_dirs", "file") else "") for part in value]
     return os.path.abspath(value) if key == "file" and value and isinstance(value, (str, os.PathLike)) else value
 
 

@@ -17,6 +17,7 @@ need("numpy", "pandas")
 import numpy  # noqa: E402
 import rouleau  # noqa: E402
 from rouleau.means import mean_of_seeds  # noqa: E402
+from rouleau.scenes import hashes_of_files, scene_file  # noqa: E402
 from rouleau.sweeping import places_of_seeds  # noqa: E402
 
 SCENE = SOURCE / "scenes/four-cells-shear.json"
@@ -275,6 +276,19 @@ class A_sweep(In_a_folder):
         changed = rouleau.plan(small_scene(), **{"/cells": {"file": "cells.csv"}})
         self.assertIn("small", repr(changed))
         self.assertEqual(len(rouleau.Simulation(scene).cells()), 2)
+
+    def test_knows_the_files_of_every_layer_of_a_picture(self):
+        for name in "ab":
+            pathlib.Path(f"{name}.png").write_bytes(name.encode())
+        scene = {"domain": {"obstacles": [{"image": {"file": ["a.png", "b.png"], "pixel": "1 um"}}]}}
+        before = hashes_of_files(scene, {})
+        self.assertEqual(len(before), 2)
+        pathlib.Path("b.png").write_bytes(b"c")
+        self.assertNotEqual(hashes_of_files(scene, {})[1], before[1])
+        with scene_file(scene) as path:
+            files = json.loads(path.read_text())["domain"]["obstacles"][0]["image"]["file"]
+        self.assertEqual(files, [str(self.path / "a.png"), str(self.path / "b.png")])
+
     def test_runs_anew_what_another_library_computed(self):
         plugin = pathlib.Path("morse").resolve()
         shutil.copytree(BUILD / "lib/rouleau/plugins/interaction/morse", plugin)
