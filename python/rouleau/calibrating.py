@@ -486,7 +486,7 @@ def _page(belief: _Belief, axes: Sequence[_Axis], goals: Sequence[_Goal], points
     parts = []
     if verdict is None:
         for key, row in parameters.iterrows():
-            parts.append(f'<p class="verdict">{html.escape(str(key))} = <strong>{row.value:.4g} {html.escape(row.unit)}</strong>, '
+            parts.append(f'<p class="verdict">{html.escape(str(key))} = <strong>{html.escape(f"{row.value:.4g} {row.unit}".rstrip())}</strong>, '
                          f"95 %: {row.low:.4g} to {row.high:.4g}</p>\n")
     else:
         parts.append(f'<p class="verdict"><strong>No value is given.</strong> {html.escape(verdict.problem)}.</p>\n')

@@ -119,8 +119,9 @@ def chart(lines: Sequence[Line], x_label: str, y_label: str, level: tuple[float,
                   if math.isfinite(x) and math.isfinite(y) and math.isfinite(bar)]
         drawn += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.5" fill="{colour}"/>' for x, y in places] if line.points else []
         if line.label:
-            drawn.append(f'<rect x="{LEFT + 10}" y="{TOP + 16 * k}" width="10" height="10" fill="{colour}"/>')
-            drawn.append(text(LEFT + 26, TOP + 9 + 16 * k, line.label, "start"))
+            top = TOP + 16 * sum(bool(before.label) for before in lines[:k])
+            drawn.append(f'<rect x="{LEFT + 10}" y="{top}" width="10" height="10" fill="{colour}"/>')
+            drawn.append(text(LEFT + 26, top + 9, line.label, "start"))
     return "".join(drawn) + "</svg>\n"
 
 

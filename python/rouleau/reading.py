@@ -48,6 +48,8 @@ def mean_and_error(values: Sequence[float] | Floats, parts: int = 4, times: Sequ
     on, by trapezes, and its standard error from the means of `parts` parts of equal length, which are nearly independent
     where a part is longer than the values remember. Nothing is left out. The error is nan where there are fewer values than
     parts, and the mean where there is none."""
+    values = list(values)  # a Series may begin with another number than 0
+    times = list(times) if times is not None else None
     kept = [k for k, value in enumerate(values) if math.isfinite(value)]
     y = [float(values[k]) for k in kept]
     if times is None:  # a value lasts from one whole number to the next

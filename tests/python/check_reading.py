@@ -292,6 +292,12 @@ class A_mean(Case):
             self.assertAlmostEqual(mean.value, 1.5, delta=1e-14)
             self.assertAlmostEqual(mean.error, math.sqrt(0.3125 / 3 / 4), delta=1e-14)
 
+    def test_takes_a_part_of_a_column(self):
+        import pandas
+        column = pandas.Series([9.0, 1.0, 2.0, 3.0, 2.0])[1:]
+        self.assertEqual(rouleau.mean_and_error(column), rouleau.mean_and_error(column.tolist()))
+        self.assertEqual(rouleau.mean_and_error(column, times=column.index), rouleau.mean_and_error(column.tolist(), times=[1, 2, 3, 4]))
+
     def test_of_too_few_values_is_no_number(self):
         self.assertTrue(math.isnan(rouleau.mean_and_error([1, 2, 3]).error))
         self.assertTrue(all(map(math.isnan, rouleau.mean_and_error([math.nan]))))
