@@ -39,6 +39,7 @@ FLAT = 0.8  # share of its range that a parameter's 95 % interval may have; all 
 MISFIT = 3.5  # standard errors
 SURROGATE_SHARE = 0.05  # of an observation's variance that may come from the surrogate
 LEAST_MORE = 4  # points beside the first, for each parameter: fewer say too little about how bent a function is
+LEAST_FOR_FLAT = 2  # the same before a parameter is called flat
 DRAWS = 64
 
 
@@ -120,7 +121,7 @@ def calibrate(scene: Union[SceneLike, Simulator], parameters: Mapping[str, tuple
     """
     folder = pathlib.Path(out)
     axes = _axes(parameters)
-    goals = _goals(observed, callable(scene))
+    goals = _goals(observed)
     limit = whole("most_points", most_points, FIRST_POINTS[len(axes)]) if most_points is not None else MOST_POINTS[len(axes)]
     if callable(scene):
         if seeds is not None or changes:
@@ -154,7 +155,8 @@ def calibrate(scene: Union[SceneLike, Simulator], parameters: Mapping[str, tuple
             compute([[bracket[0] + (bracket[1] - bracket[0]) * k / (room + 1)] for k in range(1, room + 1)])
         else:
             belief = _Belief(points, goals, len(axes))
-            if belief.is_flat_whatever_comes() or (before >= len(_first(len(axes))) + LEAST_MORE * len(axes) and belief.is_sure()):
+            more = (before - len(_first(len(axes)))) / len(axes)
+            if (more >= LEAST_FOR_FLAT and belief.is_flat_whatever_comes()) or (more >= LEAST_MORE and belief.is_sure()):
                 break
             compute(belief.next_places(room))
         if len(points) == before:
@@ -175,7 +177,7 @@ def _axes(parameters: Mapping[str, tuple[Any, Any]]) -> list[_Axis]:
     return axes
 
 
-def _goals(observed: Mapping[str, Sequence[Any]], by_function: bool) -> list[_Goal]:
+def _goals(observed: Mapping[str, Sequence[Any]]) -> list[_Goal]:
     goals = []
     for name, entry in observed.items():
         good = isinstance(entry, (tuple, list)) and len(entry) in (2, 3) and all(isinstance(part, (int, float)) for part in entry[:2])

@@ -16,6 +16,7 @@ import unittest
 from package import SOURCE, Case, main, need, small_scene
 
 need("numpy", "pandas")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the matrices are small
 
 import numpy  # noqa: E402
 
