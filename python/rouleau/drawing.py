@@ -67,7 +67,10 @@ def plot_column(outputs: Any, column: str, over: str, axis: Any) -> None:
         axis.plot(along * rows[over].to_numpy(), scale * rows[column].to_numpy())
     else:
         known = [name for name in (*outputs.cells, *series) if name not in ("step", "type", "stage_name")]
-        raise Error(Fault(f'there is no column "{column if over in series else over}"',
+        import difflib
+        missing = column if over in series else over
+        near = difflib.get_close_matches(missing, known, 1)
+        raise Error(Fault(f'there is no column "{missing}"' + (f'; did you mean "{near[0]}"?' if near else ""),
                           "columns: " + ", ".join(dict.fromkeys(known))))
     axis.set_ylabel(label)
 
@@ -138,6 +141,7 @@ def plot_frame(frame: Any, colour: str, field: str | None, axes: Any) -> Any:
     for patch in wall_patches(frame):
         axes.add_patch(patch)
     largest = max((float(abs(cell.tension).max()) for cell in frame.cells), default=0.0)
+    in_space = any(cell.triangles is not None for cell in frame.cells)
     for cell in frame.cells:
         for outline in images(cell, frame.size_m):
             closed = 1e6 * numpy.vstack([outline, outline[:1]])
@@ -151,7 +155,7 @@ def plot_frame(frame: Any, colour: str, field: str | None, axes: Any) -> Any:
     if colour == "tension" and frame.cells:
         axes.figure.colorbar(lines, label="tension (µN/m)", **bar)
     axes.set(xlim=(0, width), ylim=(0, height), aspect="equal", xlabel="x (µm)", ylabel="y (µm)",
-             title=f"strain {frame.strain:.2f}, {frame.time_s:.3g} s")
+             title=f"strain {frame.strain:.2f}, {frame.time_s:.3g} s" + (", cells cut through their middles" if in_space else ""))
     return axes
 
 

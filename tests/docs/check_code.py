@@ -311,7 +311,7 @@ BLOCKS = [
     ("docs/python.md", "import rouleau\nfrom", "run by tests/python/check_notebooks.py, block after block"),
     ("docs/python.md", "import numpy\n", "run by tests/python/check_notebooks.py, block after block"),
     ("docs/python.md", "table = rouleau.sweep", "run by tests/python/check_notebooks.py, block after block"),
-    ("docs/python.md", "def contact", "run by tests/python/check_notebooks.py, block after block"),
+    ("docs/python.md", "def deformation", "run by tests/python/check_notebooks.py, block after block"),
     ("docs/python.md", "scene = {", "run by tests/python/check_notebooks.py, block after block"),
     ("docs/resume.md", "import h5py", lambda test, block: ast.parse(block.text)),
     ("docs/simulation.md", "import rouleau", lambda test, block: ast.parse(block.text)),

@@ -175,21 +175,20 @@ class A_scene(Case):
         print(f"{len(found.runs)} runs, with another observation {len(other.runs)}")
 
     @unittest.skipUnless(WITH_SCENE, "minutes: give the argument scene")
-    def test_that_is_shipped_has_a_hidden_depth_found_from_the_length_of_its_contacts(self):
+    def test_that_is_shipped_has_a_hidden_depth_found_from_the_deformation_of_its_cells(self):
         scene, key = SOURCE / "scenes/four-cells-shear.json", "/interactions/0/parameters/depth"
         rest = {"/stages/1/strain": 0.1}  # what is observed comes before the shear
 
-        def contact(run):
-            contacts = run.stage("aggregate").aggregates
-            return contacts[contacts["step"] == contacts["step"].max()]["contact_length_m"].mean()
+        def deformation(run):
+            return run.stage("aggregate").pivot("deformation", over="step").iloc[-1].mean()
 
         hidden = 1.3e-7
         truth = rouleau.run(scene, "truth", progress=False, **rest, **{key: f"{hidden} J/m2"})
-        observed, error = contact(truth), 0.05e-6
+        observed, error = deformation(truth), 0.005
         begun = time.monotonic()
-        found = rouleau.calibrate(scene, {key: ("2e-8 J/m2", "2e-6 J/m2")}, {"contact_m": (observed, error, contact)},
+        found = rouleau.calibrate(scene, {key: ("2e-8 J/m2", "2e-6 J/m2")}, {"deformation": (observed, error, deformation)},
                                   out=os.environ.get("CALIBRATION", "cal"), workers=2, progress=False, **rest)
-        print(f"hidden {hidden:.3g}, contacts of {observed:.4g} +- {error:.2g} m; found {found}\n{len(found.runs)} runs, {time.monotonic() - begun:.0f} s")
+        print(f"hidden {hidden:.3g}, deformation {observed:.4g} +- {error:.2g}; found {found}\n{len(found.runs)} runs, {time.monotonic() - begun:.0f} s")
         print(found.runs.drop(columns="directories").to_string())
         self.assertLess(found.parameters.loc[key, "low"], hidden)
         self.assertGreater(found.parameters.loc[key, "high"], hidden)

@@ -192,6 +192,9 @@ class Pictures_in_space(Exported):
         self.assertEqual(len(axes.lines), 12)  # the box
         flat = self.flat.frame().plot3d()
         self.assertEqual(len(flat.lines), 2 + 4)
+        self.assertIn("cells cut through their middles", frame.plot().get_title())
+        self.assertNotIn("cut", self.flat.frame().plot().get_title())
+        self.assert_refused('did you mean "deformation"', self.flat.plot, "deformatoin")
         self.assert_refused("these axes are flat", frame.plot3d, axes=self.flat.frame().plot())
 
 
