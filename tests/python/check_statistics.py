@@ -1,11 +1,13 @@
 """Statistics of series: where they became steady, their mean, and whether 95 % of the bars hold the true one.
 
 Series of known mean and correlation, from seeds that were chosen before anything was looked at. With a number as third
-argument so many series of each kind are made, and a table in Markdown is printed (docs/results/means-2026-11.md).
+argument so many series of each kind are made, and a table in Markdown is printed (docs/results/means-2026-11.md). With
+"suspension" two suspensions are run for minutes, and tenths of them compared with the whole.
 """
 
 import math
 import sys
+import unittest
 
 from package import Case, main, need, small_scene
 
@@ -16,7 +18,8 @@ import numpy  # noqa: E402
 import rouleau  # noqa: E402
 
 SEED = 20261130
-SERIES = int(sys.argv[3]) if len(sys.argv) > 3 else 100
+WITH_SUSPENSION = sys.argv[3:4] == ["suspension"]
+SERIES = int(sys.argv[3]) if len(sys.argv) > 3 and not WITH_SUSPENSION else 100
 
 
 def process(coefficients, count, noise, mean=3.0, run_in=1000):
@@ -132,6 +135,29 @@ class Of_a_run(Case):
             self.assertEqual(str(run.stage("shear").statistics(column)), str(wanted))
             print(f"{column}: {wanted}")
         self.assert_refused('did you mean "relative_viscosity"', run.statistics, "relative_viscosty")
+
+
+class Of_a_suspension(Case):
+    @unittest.skipUnless(WITH_SUSPENSION, "minutes: give the argument suspension")
+    def test_hold_for_a_tenth_what_the_whole_has(self):
+        scene = small_scene(
+            domain={"size": ["24 um", "20 um"], "nodes": [48, 40], "y": {"lower": {"wall": {}}, "upper": {"wall": {}}}},
+            numerics={"density_factor": 2000, "slip_correction": True, "area_correction": True},
+            cells=[{"type": "rbc", "random": {"hematocrit": 0.3, "seed": 1}}], output={"cells": {"strain": 0.25}},
+            stages=[{"name": "shear", "shear_rate": "40 1/s", "strain": 2100}])
+        table = rouleau.sweep(scene, {"stages.0.strain": [2100]}, seeds=[1, 2], out=self.path / "runs", workers=2, progress=False)
+        answered = held = 0
+        for run in map(rouleau.open, table["directories"][0]):
+            for column in ("relative_viscosity", "deformation", "aggregate_size_number_mean"):
+                values = run.cells.groupby(["step", "time_s"])[column].mean().reset_index() if column in run.cells else run.series
+                y, t = values[column].tolist()[1:], values["time_s"].tolist()[1:]
+                whole, length = rouleau.statistics(y, t), len(y) // 10
+                parts = [rouleau.statistics(y[k:k + length], t[k:k + length]) for k in range(0, 10 * length, length)]
+                steady = [part for part in parts if part.steady]
+                inside = sum(abs(part.value - whole.value) <= part.bar95 for part in steady)
+                print(f"{column}: the whole {whole}; of ten tenths {len(steady)} have a mean, {inside} bars hold that of the whole")
+                answered, held = answered + len(steady), held + inside
+        self.assertGreaterEqual(held, 0.85 * answered)
 
 
 if __name__ == "__main__":
