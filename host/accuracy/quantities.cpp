@@ -34,9 +34,15 @@ void add(std::vector<Quantity>& all, Quantity quantity) {
   if (std::isfinite(quantity.value)) all.push_back(std::move(quantity));
 }
 
+/// Columns of cells.csv, those of three dimensions, that are reported as they are at the end.
+constexpr std::array<const char*, 7> last_values{
+    "extent_x_m",         "extent_y_m",    "extent_z_m",        "tank_treading_frequency_1_per_s",
+    "velocity_x_m_per_s", "rear_hollow_m", "offset_from_axis_m"};
+
 /// Rows of one cell.
 struct CellColumns {
   long number = 0;
+  std::array<double, last_values.size()> last{};
   Column strain, time, angle, deformation, y;
   std::size_t rows = 0;  ///< until the end of the scene's own stages
 };
@@ -54,6 +60,9 @@ std::vector<CellColumns> read_cells(const std::filesystem::path& file, double en
   std::map<double, CellColumns> cells;
   const Column number = table.numbers("cell"), strain = table.numbers("strain"), time = table.numbers("time_s"),
                angle = table.numbers("angle_rad"), deformation = table.numbers("deformation"), y = table.numbers("y_m");
+  std::array<Column, last_values.size()> others;
+  for (std::size_t k = 0; k < others.size(); ++k)
+    if (table.has(last_values[k])) others[k] = table.numbers(last_values[k]);
   double last = -std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < number.size(); ++i) {
     if (!std::isfinite(number[i])) continue;
@@ -64,7 +73,9 @@ std::vector<CellColumns> read_cells(const std::filesystem::path& file, double en
     cell.angle.push_back(angle[i]);
     cell.deformation.push_back(deformation[i]);
     cell.y.push_back(y[i]);
-    if (time[i] <= end) cell.rows = cell.time.size(), last = std::max(last, time[i]);
+    if (!(time[i] <= end)) continue;
+    cell.rows = cell.time.size(), last = std::max(last, time[i]);
+    for (std::size_t k = 0; k < others.size(); ++k) cell.last[k] = others[k].empty() ? std::nan("") : others[k][i];
   }
   std::vector<CellColumns> there;
   for (auto& [key, cell] : cells) {
@@ -108,6 +119,8 @@ void add_cells(std::vector<Quantity>& all, const std::vector<CellColumns>& cells
     const bool inclined = std::abs(angle) < std::numbers::pi / 2;  // an angle that turns on is large for another reason
     add(all, {.name = prefix + "angle_rad", .value = angle, .part_of_cells = inclined ? angle : 0, .principal = lone});
     add(all, {.name = prefix + "y_m", .value = cell.y[cell.rows - 1]});
+    for (std::size_t k = 0; k < last_values.size(); ++k)
+      add(all, {.name = prefix + last_values[k], .value = cell.last[k]});
     add_passages(all, cell, prefix, lone);
   }
 }

@@ -27,7 +27,8 @@ struct Quantity {
 
 /// Of a run that has completed:
 ///   deformation            mean over the cells at the end; up to eight cells: cell_N_deformation, cell_N_angle_rad,
-///                          cell_N_y_m (of a lone cell angle_rad, y_m)
+///                          cell_N_y_m (of a lone cell angle_rad, y_m), in three dimensions also extents, velocity,
+///                          tank-treading frequency, hollow and offset, by the names of their columns
 ///   passage_strain_N_deg   strain at which the long axis of a cell that turns over first passes a multiple of 45 deg
 ///   relative_viscosity ... the means of summary.json over the second half of a stage: of the last stage that has one;
 ///                          of stages before it STAGE: relative_viscosity

@@ -13,6 +13,7 @@
 #include "manage_plugins.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/parameter_ranges.hpp"
+#include "scene/named_files.hpp"
 
 namespace rouleau::command {
 
@@ -32,11 +33,15 @@ interface", and an id must not be taken. To take one out again, delete its folde
 With --index FILE: compares what is installed with the index of a collection that somebody publishes. Exit code 3 where
 a plugin has the id and version of an entry, but another manifest. Nothing is downloaded.
 
+With --cells: lists the cells that are shipped, which a cell type takes by "from"; with the name of one its values, and
+the source and the spread of each.
+
 With --lock SCENE: writes SCENE's lock, NAME.lock.json beside NAME.json: id, kind, version and SHA-256 of library and
 manifest of each plugin that the scene names. Runs and plans of the scene then refuse every other plugin.
 
 Example:
   rouleau plugins morse
+  rouleau plugins --cells human-red-cell
   rouleau plugins --lock scenes/four-cells-shear.json
   rouleau plugins --install yukawa/build
 )";
@@ -218,6 +223,30 @@ const plugin::Manifest& find(const plugin::Catalog& catalog, const std::string& 
                                     "\n  there are: " + listed(ids));
 }
 
+/// The shipped cells, or one of them with its sources.
+void list_cells(const std::string& wanted, bool as_json) {
+  Json all = Json::array();
+  for (const std::string& name : wanted.empty() ? scene::cell_names() : std::vector{wanted}) {
+    const auto [file, content] = scene::shipped_cell(name, {"rouleau plugins --cells", {}, 0, 0});
+    all.push_back(content);
+    all.back().update({{"name", name}, {"file", file.string()}});
+    if (as_json) continue;
+    std::string padded = name;
+    padded.resize(std::max<std::size_t>(name.size(), 18), ' ');
+    std::cout << folded(padded + printable(content["title"].get<std::string>()), text_width()) << '\n';
+    if (wanted.empty()) continue;
+    const Json sources = content["sources"], values = content["cell_type"];
+    for (const auto& [pointer, from] : sources.items()) {
+      std::cout << "  " << pointer << "  " << values.at(Json::json_pointer(pointer)).dump() << '\n';
+      for (const char* key : {"source", "spread"}) {
+        const std::string line = std::string("      ") + key + ": " + printable(from.at(key).get<std::string>());
+        std::cout << folded(line, text_width()) << '\n';
+      }
+    }
+  }
+  if (as_json) std::cout << all.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
 /// What the command is asked for, of which there can be one at a time.
 void require_one(const std::vector<std::pair<std::string, bool>>& asked) {
   std::vector<std::string> given;
@@ -233,10 +262,11 @@ int plugins_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
   std::string id, scene, out, install, index;
   std::vector<std::string> plugin_dirs;
-  bool as_json = false, overwrite = false, paths = false;
+  bool as_json = false, overwrite = false, paths = false, cells = false;
   options::options_description description("options");
   options::positional_options_description positional;
-  description.add_options()("id", options::value(&id), "a model; without it all are listed");
+  description.add_options()("id", options::value(&id), "a model, or with --cells a cell; without it all are listed");
+  description.add_options()("cells", options::bool_switch(&cells), "the cells that are shipped, with their sources");
   description.add_options()("plugin-dir", options::value(&plugin_dirs)->composing()->value_name("DIR"),
                             "search this folder for plugins first (repeatable)");
   description.add_options()("paths", options::bool_switch(&paths), "also the manifest's path of each model");
@@ -252,10 +282,15 @@ int plugins_command(const std::vector<std::string>& arguments) {
   if (!parse_command_line("plugins", plugins_help, arguments, description, positional)) return 0;
 
   const std::vector<std::filesystem::path> named(plugin_dirs.begin(), plugin_dirs.end());
+  if (cells && scene.empty() && install.empty() && index.empty()) {
+    list_cells(id, as_json);
+    return exit_code::done;
+  }
   require_one({{"the ID of a model", !id.empty()},
                {"--lock", !scene.empty()},
                {"--install", !install.empty()},
-               {"--index", !index.empty()}});
+               {"--index", !index.empty()},
+               {"--cells", cells}});
   if (overwrite && install.empty())
     throw Error(Cause::bad_input, "rouleau plugins: --overwrite goes with --install DIR");
   if (!scene.empty()) {

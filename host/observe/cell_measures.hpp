@@ -27,6 +27,10 @@ struct CellMeasures {
   double z = 0, volume = 0, surface_area = 0;
   std::array<double, 3> semi_axes{};   ///< largest first
   std::array<double, 3> short_axis{};  ///< unit vector, its first component that is not 0 positive
+  std::array<double, 3> extent{};      ///< along x, y and z
+  double velocity = 0;                 ///< along x, mean over what the cell encloses
+  double treading = 0;                 ///< of the membrane within its shape, counter-clockwise about z, rad per step
+  double rear_hollow = 0;              ///< CellSnapshot::rear_hollow
 };
 
 /// `region`: of the fluid (scene::fluid_region); null: planes alone close the domain. `marker`: the node that is
@@ -40,6 +44,10 @@ CellMeasures measure(const core::Surfaces& surfaces, int cell, const core::Domai
 double enclosed(const core::Membranes& membranes, int cell);
 /// Volume that a surface encloses.
 double enclosed(const core::Surfaces& surfaces, int cell);
+
+/// Integral of the velocity along x over what a cell encloses.
+double carried(const core::Membranes& membranes, int cell);
+double carried(const core::Surfaces& surfaces, int cell);
 
 /// The node of a surface farthest from the line along z through its centroid: its angle about that line is told best.
 int outermost(const core::Surfaces& surfaces, int cell);

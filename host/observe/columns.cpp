@@ -62,25 +62,18 @@ Value members_of_aggregate(const Row& row) {
 
 /// What every table begins with.
 constexpr Observable instant_columns[] = {
-    {.name = "step", .unit = "", .doc = "number of the step, over all stages", .value = output<&Snapshot::step>},
-    {.name = "time",
-     .unit = "s",
-     .doc = "simulated time since the first stage began",
-     .value = output<&Snapshot::time>},
-    {.name = "strain", .unit = "", .doc = "summed over the stages", .value = output<&Snapshot::strain>},
+    {"step", "", "number of the step, over all stages", output<&Snapshot::step>},
+    {"time", "s", "simulated time since the first stage began", output<&Snapshot::time>},
+    {"strain", "", "summed over the stages", output<&Snapshot::strain>},
 };
 
 constexpr Observable cell_columns[] = {
-    {.name = "cell",
-     .unit = "",
-     .doc = "number of the cell, from 0 in the scene's order; no other cell gets it. A row is there while the cell is",
-     .value = cell<&CellSnapshot::cell>},
-    {.name = "type", .unit = "", .doc = "its type", .value = cell<&CellSnapshot::type>},
-    {.name = "x",
-     .unit = "m",
-     .doc = "centroid of what the membrane encloses; not wrapped into the periodic box",
-     .value = cell<&CellSnapshot::x>},
-    {.name = "y", .unit = "m", .doc = "likewise", .value = cell<&CellSnapshot::y>},
+    {"cell", "",
+     "number of the cell, from 0 in the scene's order; no other cell gets it. A row is there while the cell is",
+     cell<&CellSnapshot::cell>},
+    {"type", "", "its type", cell<&CellSnapshot::type>},
+    {"x", "m", "centroid of what the membrane encloses; not wrapped into the periodic box", cell<&CellSnapshot::x>},
+    {"y", "m", "likewise", cell<&CellSnapshot::y>},
     {.name = "angle",
      .unit = "rad",
      .doc = "of the long axis against x, counter-clockwise, followed over turns; `nan` for a circle",
@@ -91,14 +84,8 @@ constexpr Observable cell_columns[] = {
      .doc = "(L - B)/(L + B) with the axes L > B of the inertia ellipse",
      .value = cell<&CellSnapshot::deformation>,
      .chart = "Deformation (L − B)/(L + B)"},
-    {.name = "area",
-     .unit = "m2",
-     .doc = "that the outline encloses; empty in three dimensions",
-     .value = of_outline<&CellSnapshot::area>},
-    {.name = "perimeter",
-     .unit = "m",
-     .doc = "of the outline; empty in three dimensions",
-     .value = of_outline<&CellSnapshot::perimeter>},
+    {"area", "m2", "that the outline encloses; empty in three dimensions", of_outline<&CellSnapshot::area>},
+    {"perimeter", "m", "of the outline; empty in three dimensions", of_outline<&CellSnapshot::perimeter>},
     {.name = "min_gap",
      .unit = "m",
      .doc = "to the nearest outline of another cell or of any periodic image; `inf` where there is none",
@@ -111,95 +98,34 @@ constexpr Observable cell_columns[] = {
          "walls",
      .value = cell<&CellSnapshot::wall_gap>,
      .chart = "Smallest gap to a wall"},
-    {.name = "aggregate",
-     .unit = "",
-     .doc = "label of the cell's aggregate: the smallest number of its cells",
-     .value = cell<&CellSnapshot::aggregate>},
-    {.name = "tank_treading_angle",
-     .unit = "rad",
-     .doc = "of the outline's first node about the centroid, followed over turns; of a surface that of the node "
-            "that was farthest from its axis along z at the start",
-     .value = cell<&CellSnapshot::tank_treading_angle>},
-    {.name = "through_image",
-     .unit = "",
-     .doc = "1 where the aggregate is held together through the periodic border",
-     .value = cell<&CellSnapshot::through_image>},
-    {.name = "stretch_min",
-     .unit = "",
-     .doc = "smallest stretch of a segment of the cell, length over rest length",
-     .value = cell<&CellSnapshot::stretch_min>},
-    {.name = "stretch_max",
-     .unit = "",
-     .doc = "largest stretch of a segment of the cell",
-     .value = cell<&CellSnapshot::stretch_max>},
-    {.name = "z", .unit = "m", .doc = "centroid along z", .value = cell<&CellSnapshot::z>, .in_space = true},
-    {.name = "volume",
-     .unit = "m3",
-     .doc = "that the surface encloses",
-     .value = cell<&CellSnapshot::volume>,
-     .in_space = true},
-    {.name = "surface_area",
-     .unit = "m2",
-     .doc = "of the surface",
-     .value = cell<&CellSnapshot::surface_area>,
-     .in_space = true},
-    {.name = "semi_axis_a",
-     .unit = "m",
-     .doc = "largest semi-axis of the ellipsoid that has the enclosed volume's second moments",
-     .value = cell<&CellSnapshot::semi_axes, 0>,
-     .in_space = true},
-    {.name = "semi_axis_b",
-     .unit = "m",
-     .doc = "its middle semi-axis",
-     .value = cell<&CellSnapshot::semi_axes, 1>,
-     .in_space = true},
-    {.name = "semi_axis_c",
-     .unit = "m",
-     .doc = "its smallest semi-axis",
-     .value = cell<&CellSnapshot::semi_axes, 2>,
-     .in_space = true},
-    {.name = "axis_x",
-     .unit = "",
-     .doc = "direction of the smallest semi-axis, which is the axis of a red cell: a unit vector",
-     .value = cell<&CellSnapshot::short_axis, 0>,
-     .in_space = true},
-    {.name = "axis_y", .unit = "", .doc = "likewise", .value = cell<&CellSnapshot::short_axis, 1>, .in_space = true},
-    {.name = "axis_z", .unit = "", .doc = "likewise", .value = cell<&CellSnapshot::short_axis, 2>, .in_space = true},
+    {"aggregate", "", "label of the cell's aggregate: the smallest number of its cells",
+     cell<&CellSnapshot::aggregate>},
+    {"tank_treading_angle", "rad",
+     "of the outline's first node about the centroid, followed over turns; of a surface that of the node "
+     "that was farthest from its axis along z at the start",
+     cell<&CellSnapshot::tank_treading_angle>},
+    {"through_image", "", "1 where the aggregate is held together through the periodic border",
+     cell<&CellSnapshot::through_image>},
+    {"stretch_min", "", "smallest stretch of a segment of the cell, length over rest length",
+     cell<&CellSnapshot::stretch_min>},
+    {"stretch_max", "", "largest stretch of a segment of the cell", cell<&CellSnapshot::stretch_max>},
 };
 
 constexpr Observable aggregate_columns[] = {
-    {.name = "aggregate_count",
-     .unit = "",
-     .doc = "number of aggregates; single cells included",
-     .value = output<&Snapshot::aggregate_count>},
-    {.name = "aggregate",
-     .unit = "",
-     .doc = "label: the smallest number of its cells",
-     .value = aggregate<&AggregateMembers::label>},
-    {.name = "members",
-     .unit = "",
-     .doc = "its cells, joined by `+`; of an aggregate of more than 16 cells they stand in its first row alone",
-     .value = members_of_aggregate},
-    {.name = "through_image",
-     .unit = "",
-     .doc = "1 where it is held together through the periodic border",
-     .value = aggregate<&AggregateMembers::through_image>},
-    {.name = "rotation",
-     .unit = "rad",
-     .doc = "angle of the line through its two outermost cells",
-     .value = rotation_of_aggregate},
-    {.name = "cell_a", .unit = "", .doc = "one cell of a contact", .value = contact<&ContactSnapshot::cell_a>},
-    {.name = "cell_b",
-     .unit = "",
-     .doc = "the other; the same where a cell touches its own image",
-     .value = contact<&ContactSnapshot::cell_b>},
-    {.name = "image_x", .unit = "", .doc = "periodic shift of `cell_b` along x, in boxes", .value = image<0>},
-    {.name = "image_y", .unit = "", .doc = "along y", .value = image<1>},
-    {.name = "gap", .unit = "m", .doc = "smallest gap between the two", .value = contact<&ContactSnapshot::gap>},
-    {.name = "contact_length",
-     .unit = "m",
-     .doc = "rest length of `cell_a`'s membrane that is nearer to `cell_b` than `aggregate_gap`",
-     .value = contact<&ContactSnapshot::contact_length>},
+    {"aggregate_count", "", "number of aggregates; single cells included", output<&Snapshot::aggregate_count>},
+    {"aggregate", "", "label: the smallest number of its cells", aggregate<&AggregateMembers::label>},
+    {"members", "", "its cells, joined by `+`; of an aggregate of more than 16 cells they stand in its first row alone",
+     members_of_aggregate},
+    {"through_image", "", "1 where it is held together through the periodic border",
+     aggregate<&AggregateMembers::through_image>},
+    {"rotation", "rad", "angle of the line through its two outermost cells", rotation_of_aggregate},
+    {"cell_a", "", "one cell of a contact", contact<&ContactSnapshot::cell_a>},
+    {"cell_b", "", "the other; the same where a cell touches its own image", contact<&ContactSnapshot::cell_b>},
+    {"image_x", "", "periodic shift of `cell_b` along x, in boxes", image<0>},
+    {"image_y", "", "along y", image<1>},
+    {"gap", "m", "smallest gap between the two", contact<&ContactSnapshot::gap>},
+    {"contact_length", "m", "rest length of `cell_a`'s membrane that is nearer to `cell_b` than `aggregate_gap`",
+     contact<&ContactSnapshot::contact_length>},
     {.name = "image_z", .unit = "", .doc = "along z", .value = image<2>, .in_space = true},
     {.name = "contact_area",
      .unit = "m2",
@@ -209,8 +135,8 @@ constexpr Observable aggregate_columns[] = {
 };
 
 constexpr Observable series_columns[] = {
-    {.name = "stage", .unit = "", .doc = "number of the stage, from 0", .value = output<&Snapshot::stage>},
-    {.name = "stage_name", .unit = "", .doc = "its name", .value = output<&Snapshot::stage_name>},
+    {"stage", "", "number of the stage, from 0", output<&Snapshot::stage>},
+    {"stage_name", "", "its name", output<&Snapshot::stage_name>},
     {.name = "aggregate_count",
      .unit = "",
      .doc = "number of aggregates; single cells included",
@@ -226,11 +152,10 @@ constexpr Observable series_columns[] = {
      .value = output<&Snapshot::relative_viscosity>,
      .chart = "Relative viscosity",
      .has_means = true},
-    {.name = "shear_rate",
-     .unit = "1/s",
-     .doc = "of the walls during the last step: speed of the upper less that of the lower, over the height; `nan` "
-            "where they do not move",
-     .value = output<&Snapshot::shear_rate>},
+    {"shear_rate", "1/s",
+     "of the walls during the last step: speed of the upper less that of the lower, over the height; `nan` "
+     "where they do not move",
+     output<&Snapshot::shear_rate>},
     {.name = "wall_stress_lower",
      .unit = "Pa",
      .doc = "mean shear stress on the lower wall along +x in the last step; `nan` without walls and before they act",
@@ -395,7 +320,41 @@ std::vector<Observable> with_instant(std::span<const Observable> own) {
 
 }  // namespace
 
-std::vector<Observable> columns_of_cells() { return with_instant(cell_columns); }
+std::vector<Observable> columns_of_cells() {
+  std::vector<Observable> all = with_instant(cell_columns);
+  const auto add = [&](auto name, auto unit, auto doc, Value (*value)(const Row&)) {
+    all.push_back({.name = name, .unit = unit, .doc = doc, .value = value, .in_space = true});
+  };
+  add("z", "m", "centroid along z", cell<&CellSnapshot::z>);
+  add("volume", "m3", "that the surface encloses", cell<&CellSnapshot::volume>);
+  add("surface_area", "m2", "of the surface", cell<&CellSnapshot::surface_area>);
+  add("semi_axis_a", "m", "largest semi-axis of the ellipsoid that has the enclosed volume's second moments",
+      cell<&CellSnapshot::semi_axes, 0>);
+  add("semi_axis_b", "m", "its middle semi-axis", cell<&CellSnapshot::semi_axes, 1>);
+  add("semi_axis_c", "m", "its smallest semi-axis", cell<&CellSnapshot::semi_axes, 2>);
+  add("axis_x", "", "direction of the smallest semi-axis, which is the axis of a red cell: a unit vector",
+      cell<&CellSnapshot::short_axis, 0>);
+  add("axis_y", "", "likewise", cell<&CellSnapshot::short_axis, 1>);
+  add("axis_z", "", "likewise", cell<&CellSnapshot::short_axis, 2>);
+  add("extent_x", "m", "length of the cell along x, from its first node to its last", cell<&CellSnapshot::extent, 0>);
+  add("extent_y", "m", "likewise, along y", cell<&CellSnapshot::extent, 1>);
+  add("extent_z", "m", "likewise, along z", cell<&CellSnapshot::extent, 2>);
+  add("tank_treading_frequency", "1/s",
+      "turns of the membrane within its shape at this instant, counter-clockwise seen along z; of a shape that is round "
+      "in the plane of x and y (deformation below 1e-6) turns altogether",
+      cell<&CellSnapshot::treading>);
+  add("velocity_x", "m/s", "of the cell along x: mean over what it encloses", cell<&CellSnapshot::velocity>);
+  add("velocity_over_mean", "", "that over `mean_velocity_m_per_s` of series.csv; `nan` where this is",
+      [](const Row& row) -> Value { return row.cell->velocity / row.output.mean_velocity; });
+  add("rear_hollow", "m",
+      "depth of the hollow at the rear (parachute): along x, from the rim to the membrane on the line through the "
+      "centroid; the rear is where the cell comes from. `nan` where that line passes beside the cell",
+      cell<&CellSnapshot::rear_hollow>);
+  add("offset_from_axis", "m",
+      "of the centroid from the axis of a tube or duct, or the middle plane between two walls (slipper); `nan` elsewhere",
+      cell<&CellSnapshot::offset_from_axis>);
+  return all;
+}
 std::vector<Observable> columns_of_aggregates() { return with_instant(aggregate_columns); }
 std::vector<Observable> columns_of_series() {
   std::vector<Observable> all = with_instant(series_columns);

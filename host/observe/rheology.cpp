@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cell_measures.hpp"
 #include "cell_sums.hpp"
 #include "core/fluid/flow_rate.hpp"
 #include "core/fluid/relaxation.hpp"
@@ -40,45 +41,11 @@ double observe_openings(const core::AnyFluid<D>& fluid, const scene::Scene& scen
 template double observe_openings(const core::AnyFluid<2>&, const scene::Scene&, const units::LatticeUnits&, Snapshot&);
 template double observe_openings(const core::AnyFluid<3>&, const scene::Scene&, const units::LatticeUnits&, Snapshot&);
 
-// Over a volume whose velocity u has no divergence, u_x = div (x u): the integral is that of x u n over its surface.
-// Along segments and over triangles places and velocities are linear.
 double cell_flux(const core::Membranes& m, const core::Ranks<2>& ranks) {
-  return sum_over(m, ranks, [&](int c) {
-    const core::CellRange& cell = m.cells[c];
-    const double middle = m.position[0][cell.first];
-    double flux = 0;
-    for (int i = cell.first; i < cell.end(); ++i) {
-      const int n = cell.next(i);
-      const double normal_x = m.position[1][n] - m.position[1][i], normal_y = m.position[0][i] - m.position[0][n];
-      const auto out = [&](int k) { return m.velocity[0][k] * normal_x + m.velocity[1][k] * normal_y; };
-      const double x = m.position[0][i] - middle, next_x = m.position[0][n] - middle;
-      flux += ((2 * x + next_x) * out(i) + (x + 2 * next_x) * out(n)) / 6;
-    }
-    return flux;
-  });
+  return sum_over(m, ranks, [&](int c) { return carried(m, c); });
 }
-
 double cell_flux(const core::Surfaces& s, const core::Ranks<3>& ranks) {
-  return sum_over(s, ranks, [&](int c) {
-    const core::Mesh& mesh = s.type_of(c).mesh;
-    const core::Nodes at = s.nodes(c);
-    const int first = s.cells[c].first;
-    const std::vector<core::Vec<3>> twice_area = core::area_vectors(mesh, at);
-    double flux = 0;
-    std::size_t t = 0;
-    for (const auto& corners : mesh.triangles()) {
-      double sum_x = 0, sum_out = 0, products = 0;
-      for (const int node : corners) {
-        double out = 0;
-        for (int k = 0; k < 3; ++k) out += s.velocity[k][first + node] * twice_area[t][k] / 2;
-        const double x = at.x[node] - at.x[0];
-        sum_x += x, sum_out += out, products += x * out;
-      }
-      flux += (sum_x * sum_out + products) / 12;
-      ++t;
-    }
-    return flux;
-  });
+  return sum_over(s, ranks, [&](int c) { return carried(s, c); });
 }
 
 double apparent_viscosity(double flow_rate, double body_force, const scene::StageSetting& setting, int height) {

@@ -31,6 +31,11 @@ struct CellSnapshot {
   double surface_area = 0;             ///< m2
   std::array<double, 3> semi_axes{};   ///< m, of the inertia ellipsoid, largest first
   std::array<double, 3> short_axis{};  ///< unit vector, its first component that is not 0 positive
+  std::array<double, 3> extent{};      ///< m, along x, y and z
+  double velocity = 0;                 ///< m/s, along x, mean over what the cell encloses
+  double treading = 0;                 ///< 1/s, turns of the membrane within its shape, counter-clockwise about z
+  double rear_hollow = 0;  ///< m, along x from the rim at the rear to the membrane on the line through the centroid
+  double offset_from_axis = 0;  ///< m, of the centroid from the middle between walls; NaN where there is no such axis
 };
 
 /// Two cells (or a cell and an image) whose gap is below Output::aggregate_gap.

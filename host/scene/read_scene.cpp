@@ -12,6 +12,7 @@
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
 #include "json/schema.hpp"
+#include "named_files.hpp"
 #include "scene_reader.hpp"
 
 namespace rouleau::scene {
@@ -351,9 +352,18 @@ void check_membrane_nodes(const Scene& scene) {
 json::Document read_document(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                              Faults& faults) {
   auto document = json::Document::read(file);
-  Faults of_overrides;
-  for (const auto& assignment : overrides) of_overrides.attempt([&] { document.set(assignment); });
+  Faults of_overrides, passed;
+  const auto override_where = [&](bool of_from) {
+    for (const auto& assignment : overrides) {
+      if (assignment.substr(0, assignment.find('=')).ends_with("/from") == of_from)
+        of_overrides.attempt([&] { document.set(assignment); });
+    }
+  };
+  override_where(true);
+  take_shipped_cells(document, passed);  // others may change parts of what it gives
+  override_where(false);
   of_overrides.raise();  // what one of them was to mend is no fault of the scene
+  take_shipped_cells(document, faults);
   json::judge(document, scene_schema(), faults);
   return document;
 }

@@ -227,7 +227,11 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_vi
     // The name stands, whatever is wrong with the rest.
     CellType& type = types.emplace_back();
     type.name = name;
-    fields.attempt([&] { type.shape = read_shape(fields, pointer + "/shape", domain.dimension()); });
+    const auto require = [&](const char* key) { fields.require(pointer, key, "or \"from\", which has it"); };
+    fields.attempt([&] {
+      require("shape");
+      type.shape = read_shape(fields, pointer + "/shape", domain.dimension());
+    });
     type.segments = 0;
     fields.attempt([&] {
       if (domain.dimension() == 3) {
@@ -244,6 +248,7 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_vi
     type.interior_viscosity =
         fields.quantity_or(pointer + "/interior_viscosity", "Pa s", range::viscosity, fluid_viscosity);
     fields.attempt([&] {
+      require("membrane");
       const std::size_t laws = fields.count(pointer + "/membrane");
       for (std::size_t i = 0; i < laws; ++i) {
         fields.attempt([&] { type.membrane.push_back(fields.model(json::child_pointer(pointer + "/membrane", i))); });

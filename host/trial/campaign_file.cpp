@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "json/schema.hpp"
 #include "plan/read_scene.hpp"
+#include "scene/named_files.hpp"
 #include "scene/read_scene.hpp"
 #include "units/units.hpp"
 
@@ -16,6 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
+
+/// A scene with the keys of shipped cells that it names. Faults are added.
+json::Document with_shipped_cells(const Json& scene, const std::string& name, Faults& faults) {
+  json::Document document = json::Document::parse(scene.dump(2), name);
+  scene::take_shipped_cells(document, faults);
+  return document;
+}
 
 /// The scene with the changes of "set".
 Json read_changed_scene(const CampaignKind& kind, const CampaignFile& campaign) {
@@ -30,6 +38,8 @@ Json read_changed_scene(const CampaignKind& kind, const CampaignFile& campaign) 
     (void)plan::read_unpacked_scene(campaign.scene_file);
     scene = json::Document::read(campaign.scene_file).root();
   }
+  Faults said_below;
+  scene = with_shipped_cells(scene, campaign.scene_file.string(), said_below).root();
   if (document.root().contains("set")) put_changes(scene, document, "/set");
   try {
     check_scene(scene, campaign.scene_file.string());
@@ -65,7 +75,9 @@ double read_time_limit(const CampaignKind& kind, const json::Document& document)
 }  // namespace
 
 void check_scene(const Json& scene, const std::string& name) {
-  json::validate(json::Document::parse(scene.dump(2), name), scene::scene_schema());
+  Faults faults;
+  json::judge(with_shipped_cells(scene, name, faults), scene::scene_schema(), faults);
+  faults.raise();
 }
 
 CampaignFile read_campaign_file(const CampaignKind& kind, const fs::path& file, const Json& schema) {

@@ -34,6 +34,7 @@ class Case(unittest.TestCase):
         shutil.copy(PROGRAM, self.program)
         (self.path / "rouleau here/lib/rouleau").mkdir(parents=True)
         (self.path / "rouleau here/lib/rouleau/plugins").symlink_to(PLUGINS)
+        shutil.copytree(SOURCE / "cells", self.path / "rouleau here/share/rouleau/cells")
         self.environment = {k: v for k, v in os.environ.items() if not k.startswith("ROULEAU_")}
 
     def call(self, *words, **options):
@@ -120,7 +121,6 @@ class New_makes_a_model(Case):
         self.assertNotIn("is a plain name", words)
         (share / "cmake/Rouleau").mkdir(parents=True)
         (share / "cmake/Rouleau/RouleauConfig.cmake").touch()
-        (share / "rouleau").mkdir()
         shutil.copytree(SOURCE / "scenes", share / "rouleau/scenes")
         words = self.new("interaction", "stiff")
         self.assertIn("is a plain name", words)
@@ -145,8 +145,8 @@ class New_scene(Case):
                 self.assertIn(f"rouleau run {template}.json", words)
                 self.assertIn(about, words)
                 self.assertRegex(words, r"about [0-9.]+ (s|min|h) on one core")
-                shipped = [SOURCE / "scenes" / folder / scene.name for folder in (".", "templates")]
-                self.assertEqual([scene.read_bytes()], [file.read_bytes() for file in shipped if file.exists()])
+                shipped = [SOURCE / "scenes" / folder / scene.name for folder in ("templates", ".")]  # the former goes first
+                self.assertEqual(scene.read_bytes(), next(file.read_bytes() for file in shipped if file.exists()))
                 plan = self.call("plan", scene, "--json")
                 self.assertEqual(plan.returncode, 0, plan.stderr)
                 exceeded = [limit["name"] for limit in json.loads(plan.stdout)["limits"] if limit["margin"] < 1]
@@ -156,7 +156,7 @@ class New_scene(Case):
                 self.assertEqual(result.returncode, 0, result.stderr)
 
     def test_has_the_name_and_the_template_that_are_meant_whichever_stands_first(self):
-        shipped = {name: next(f.read_bytes() for f in (SOURCE / f"scenes/{name}.json", SOURCE / f"scenes/templates/{name}.json") if f.exists())
+        shipped = {name: next(f.read_bytes() for f in (SOURCE / f"scenes/templates/{name}.json", SOURCE / f"scenes/{name}.json") if f.exists())
                    for name in self.TEMPLATES}
         for words, file, template in (((), "demo", "demo"), (("first", "channel"), "first", "channel"), (("channel", "second"), "second", "channel"),
                                       (("capsule", "--name", "third"), "third", "capsule"), (("--name", "fourth"), "fourth", "demo"),

@@ -26,7 +26,7 @@ REQUIRED = {  # parameters that have no default
     "area": {"modulus": "10 Pa"}, "volume": {"modulus": "10 Pa"}, "bending": {"modulus": "3.6e-19 J"},
     "hooke": {"stretching_modulus": "6e-6 N/m"}, "inextensible": {"stretching_modulus": "6e-5 N/m"},
     "neo-hookean": {"shear_modulus": "6e-6 N/m"}, "skalak": {"shear_modulus": "6e-6 N/m"}, "perimeter": {"modulus": "6e-6 N/m"},
-    "surface-area": {"modulus": "6e-6 N/m"}, "local-area": {"modulus": "6e-6 N/m"},
+    "lim": {"shear_modulus": "4e-6 N/m", "area_modulus": "4e-6 N/m"}, "surface-area": {"modulus": "6e-6 N/m"}, "local-area": {"modulus": "6e-6 N/m"},
     "standard-linear-solid": {"modulus": "3e-6 N/m", "relaxation_time": "0.05 s"},
     "viscous": {"viscosity": "1e-7 N s/m"},
 }

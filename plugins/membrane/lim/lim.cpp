@@ -18,8 +18,7 @@ struct Lim {
     const S w_b = mu * (1.0 + b1 * alpha + 2.0 * b2 * beta);
     const S w_aa = Ka * (1.0 + alpha * (3.0 * a3 + 6.0 * a4 * alpha));
     const S a_2 = 0.5 * over, b_1 = a_2, cube = a_2 * over * over, b_2 = -(beta + 1.0) * a_2 * over;
-    return {Ka * 0.5 * alpha * alpha * (1.0 + alpha * (a3 + a4 * alpha)) +
-                mu * beta * (1.0 + b1 * alpha + b2 * beta),
+    return {Ka * 0.5 * alpha * alpha * (1.0 + alpha * (a3 + a4 * alpha)) + mu * beta * (1.0 + b1 * alpha + b2 * beta),
             w_b * b_1,
             w_a * a_2 + w_b * b_2,
             2.0 * mu * b2 * b_1 * b_1,

@@ -36,6 +36,16 @@ struct SkalakEnergy {
     return 0.025 * (one * one + 2.0 * one - 2.0 * two + 3.0 * two * two);
   }
 };
+struct LimEnergy {  // by principal stretches, as Lim, Wortis and Mukhopadhyay have it
+  explicit LimEnergy(const Parameters&) {}
+  template <class S>
+  S energy(const Triangle<S>& t) const {
+    const S squares = t.invariant_1 + 2.0, J = sqrt(t.invariant_2 + 1.0);  // l1^2 + l2^2, l1 l2
+    const S alpha = J - 1.0, beta = (squares - 2.0 * J) / (2.0 * J);
+    return 0.15 * (alpha * alpha - 2.0 * alpha * alpha * alpha + 8.0 * alpha * alpha * alpha * alpha) +
+           0.1 * (beta + 0.7 * alpha * beta + 1.81 * beta * beta);
+  }
+};
 struct BodyEnergy {
   explicit BodyEnergy(const Parameters&) {}
   template <class S>
@@ -49,6 +59,8 @@ struct BodyEnergy {
 std::vector<NamedLaws> laws_of_surfaces() {
   return {{"neo-hookean", {surface_law("neo-hookean", {0.1, 0})}, true},
           {"skalak", {surface_law("skalak", {0.1, 10, 0})}, true},
+          {"lim", {surface_law("lim", {0.1, 0.1, -2, 8, 0.7, 1.81})}, true},
+          {"lim, other coefficients", {surface_law("lim", {0.1, 0.3, 0.5, 1, -0.4, 0.2})}, true},
           {"hooke", {surface_law("hooke", {0.1, 0.3})}, true},
           {"hooke, wider where it is pulled", {surface_law("hooke", {0.1, -0.7})}, true},
           {"bending about the shape at rest", {surface_law("bending", {0.5, 0, 0})}, true},
@@ -198,6 +210,9 @@ TEST_CASE("the energy of a stretched sphere is that of its law") {
   const double i1 = 2 * l2 - 2, i2 = l4 - 1;
   CHECK(energy(surface_law("skalak", {0.1, 3, 0})) ==
         Approx(0.025 * (i1 * i1 + 2 * i1 - 2 * i2 + 3 * i2 * i2) * area).epsilon(1e-12));
+  const double alpha = l2 - 1;  // both stretches are the same: no shear
+  CHECK(energy(surface_law("lim", {0.1, 0.3, -2, 8, 0.7, 0.75})) ==
+        Approx(0.15 * alpha * alpha * (1 - 2 * alpha + 8 * alpha * alpha) * area).epsilon(1e-12));
   CHECK(energy(surface_law("surface-area", {0.2, 1, 0.3})) ==
         Approx((0.1 * (l2 - 1) * (l2 - 1) + 0.3 * l2) * area).epsilon(1e-12));
 }
@@ -228,6 +243,8 @@ TEST_CASE("the stiffness of laws of surfaces is the slope of their tension along
   CHECK(core::stretching_stiffness(surface_law("hooke", {0.3, 0.5})) == Approx(0.3 / (1 - 0.25)).epsilon(1e-6));
   CHECK(core::stretching_stiffness(surface_law("hooke", {0.3, 0})) == Approx(0.3).epsilon(1e-6));
   CHECK(core::stretching_stiffness(surface_law("local-area", {0.3})) == Approx(0.3).epsilon(1e-6));
+  CHECK(core::stretching_stiffness(surface_law("lim", {0.1, 0.3, -2, 8, 0.7, 0.75}), {1.0}) ==
+        Approx(0.4).epsilon(1e-6));
   CHECK(core::tension_at(surface_law("local-area", {0.3}), 1.2) == Approx(0.06).epsilon(1e-12));
 }
 
@@ -242,9 +259,11 @@ TEST_CASE("a law of triangles, nodes or bodies that gives its energy alone gets 
                               .needs = {"volume", "rest_volume", "surface_area", "rest_surface_area"},
                               .gives = {"pressure", "surface_tension", "energy"}};
   const MembraneLaws shipped = {surface_law("skalak", {0.1, 3, 0}), surface_law("local-area", {0.3}),
-                                surface_law("volume", {0.3, 0.9}), surface_law("surface-area", {0.2, 1, 0})};
+                                surface_law("lim", {0.1, 0.3, -2, 8, 0.7, 1.81}), surface_law("volume", {0.3, 0.9}),
+                                surface_law("surface-area", {0.2, 1, 0})};
   const MembraneLaws derived = {core::membrane_law(membrane<SkalakEnergy>("energy", "1"), of_triangles),
                                 core::membrane_law(membrane<LocalAreaEnergy>("energy", "1"), of_nodes),
+                                core::membrane_law(membrane<LimEnergy>("energy", "1"), of_triangles),
                                 core::membrane_law(membrane<BodyEnergy>("energy", "1"), of_bodies)};
   Surfaces other = s;
   SurfaceForces(s, {shipped}).run({}, s);
