@@ -189,4 +189,23 @@ CellMeasures measure(const core::Surfaces& surfaces, int cell, const core::Domai
   return measures;
 }
 
+void describe_surface(const CellMeasures& measures, const units::LatticeUnits& units, const scene::Domain& domain,
+                      CellSnapshot& cell) {
+  const double length = units.length;
+  cell.z = units::coordinate(measures.z, length);
+  cell.volume = measures.volume * length * length * length;
+  cell.surface_area = measures.surface_area * length * length;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    cell.semi_axes[axis] = measures.semi_axes[axis] * length;
+    cell.extent[axis] = measures.extent[axis] * length;
+  }
+  cell.short_axis = measures.short_axis;
+  cell.velocity = units.to_si(measures.velocity, units::dimension::velocity);
+  cell.treading = units.to_si(measures.treading, units::dimension::rate) / (2 * std::numbers::pi);
+  cell.rear_hollow = measures.rear_hollow * length;
+  const auto off = [&](double place, int axis) { return domain.periodic[axis] ? 0 : place - domain.size[axis] / 2; };
+  const bool has_axis = !domain.periodic[1] && !domain.has_shapes();
+  cell.offset_from_axis = has_axis ? std::hypot(off(cell.y, 1), off(cell.z, 2)) : std::nan("");
+}
+
 }  // namespace rouleau::observe

@@ -9,6 +9,8 @@
 #include "core/membrane/geometry.hpp"
 #include "core/surface/surfaces.hpp"
 #include "scene/scene.hpp"
+#include "snapshot.hpp"
+#include "units/lattice_units.hpp"
 
 namespace rouleau::observe {
 
@@ -53,5 +55,9 @@ double carried(const core::Surfaces& surfaces, int cell);
 int outermost(const core::Surfaces& surfaces, int cell);
 /// Of an outline its first node.
 inline int outermost(const core::Membranes& /*membranes*/, int /*cell*/) { return 0; }
+
+/// What cells.csv has of a surface alone, in SI; the cell's place along y is known.
+void describe_surface(const CellMeasures& measures, const units::LatticeUnits& units, const scene::Domain& domain,
+                      CellSnapshot& cell);
 
 }  // namespace rouleau::observe

@@ -340,8 +340,8 @@ std::vector<Observable> columns_of_cells() {
   add("extent_y", "m", "likewise, along y", cell<&CellSnapshot::extent, 1>);
   add("extent_z", "m", "likewise, along z", cell<&CellSnapshot::extent, 2>);
   add("tank_treading_frequency", "1/s",
-      "turns of the membrane within its shape at this instant, counter-clockwise seen along z; of a shape that is round "
-      "in the plane of x and y (deformation below 1e-6) turns altogether",
+      "turns of the membrane within its shape at this instant, counter-clockwise; of a shape that is round in the "
+      "plane of x and y (deformation below 1e-6) turns altogether",
       cell<&CellSnapshot::treading>);
   add("velocity_x", "m/s", "of the cell along x: mean over what it encloses", cell<&CellSnapshot::velocity>);
   add("velocity_over_mean", "", "that over `mean_velocity_m_per_s` of series.csv; `nan` where this is",
@@ -351,7 +351,7 @@ std::vector<Observable> columns_of_cells() {
       "centroid; the rear is where the cell comes from. `nan` where that line passes beside the cell",
       cell<&CellSnapshot::rear_hollow>);
   add("offset_from_axis", "m",
-      "of the centroid from the axis of a tube or duct, or the middle plane between two walls (slipper); `nan` elsewhere",
+      "of the centroid from the axis of a tube or duct, or the plane amid two walls (slipper); `nan` elsewhere",
       cell<&CellSnapshot::offset_from_axis>);
   return all;
 }

@@ -45,15 +45,6 @@ ContactSnapshot in_si(const CellContact& c, double length) {
   return s;
 }
 
-/// Of a place along y and z from the middle between plane walls, or of a duct or tube; NaN where there is none.
-double offset_from_axis(const scene::Domain& domain, const std::array<double, 2>& place) {
-  if (domain.has_shapes() || domain.periodic[1]) return std::nan("");
-  double square = 0;
-  for (int axis = 1; axis < domain.dimension(); ++axis)
-    square += domain.periodic[axis] ? 0 : std::pow(place[axis - 1] - domain.size[axis] / 2, 2);
-  return std::sqrt(square);
-}
-
 }  // namespace
 
 Observer::Observer(const scene::Scene& scene) : scene_(&scene), domain_(scene::lattice_domain(scene)) {}
@@ -198,18 +189,7 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
     s.aggregate = aggregates.label[k];
     s.through_image = aggregates.through_image[k];
     follow_stretch(m.stretch, s);
-    s.z = units::coordinate(m.z, length);
-    s.volume = m.volume * length * length * length;
-    s.surface_area = m.surface_area * length * length;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      s.semi_axes[axis] = m.semi_axes[axis] * length;
-      s.extent[axis] = m.extent[axis] * length;
-    }
-    s.short_axis = m.short_axis;
-    s.velocity = units.to_si(m.velocity, units::dimension::velocity);
-    s.treading = units.to_si(m.treading, units::dimension::rate) / (2 * std::numbers::pi);
-    s.rear_hollow = m.rear_hollow * length;
-    s.offset_from_axis = offset_from_axis(scene_->domain, {s.y, s.z});
+    describe_surface(m, units, scene_->domain, s);
     snapshot.cells.push_back(std::move(s));
   }
   snapshot.rotation = rotation_.follow(contacts, aggregates, centers, domain_);
