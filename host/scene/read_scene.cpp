@@ -136,8 +136,7 @@ void read_domain(const SceneFields& fields, Domain& domain) {
   });
   fields.attempt([&] {
     if (!is_known(domain)) return;
-    const double along_x = domain.size.x() / domain.nodes[0];
-    const double along_y = domain.size.y() / domain.nodes[1];
+    const double along_x = domain.size.x() / domain.nodes[0], along_y = domain.size.y() / domain.nodes[1];
     if (std::abs(along_x - along_y) > spacing_tolerance * along_x) {
       fields.refuse("/domain/size", "the lattice spacing would be " + number(along_x * 1e6) + " um along x but " +
                                         number(along_y * 1e6) + " um along y; it must be the same along both\n" +
@@ -353,15 +352,12 @@ json::Document read_document(const std::filesystem::path& file, const std::vecto
                              Faults& faults) {
   auto document = json::Document::read(file);
   Faults of_overrides, passed;
-  const auto override_where = [&](bool of_from) {
-    for (const auto& assignment : overrides) {
+  for (const bool of_from : {true, false}) {
+    for (const auto& assignment : overrides)
       if (assignment.substr(0, assignment.find('=')).ends_with("/from") == of_from)
         of_overrides.attempt([&] { document.set(assignment); });
-    }
-  };
-  override_where(true);
-  take_shipped_cells(document, passed);  // others may change parts of what it gives
-  override_where(false);
+    if (of_from) take_shipped_cells(document, passed);  // others may change parts of what it gives
+  }
   of_overrides.raise();  // what one of them was to mend is no fault of the scene
   take_shipped_cells(document, faults);
   json::judge(document, scene_schema(), faults);
