@@ -15,6 +15,7 @@ import tempfile
 from typing import Any, Iterator, Mapping, Union
 
 from .errors import Error, Fault
+from .program import call_json
 
 #: A scene: the path of its file, or its content.
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
@@ -98,7 +99,8 @@ def options_of(changes: Mapping[str, Any], scene: SceneLike) -> list[str]:
 
 
 def hashes_of_files(scene: SceneLike, changes: Mapping[str, Any]) -> list[str]:
-    """SHA-256 of the files that the scene and its changes name, as far as they are there: part of what a run means."""
+    """SHA-256 of the files and of the shipped cells that the scene and its changes name, as far as they are there: part of
+    what a run means."""
     folder = pathlib.Path() if isinstance(scene, Mapping) else path_of(scene).parent
     content = scene
     if not isinstance(scene, Mapping):
@@ -106,9 +108,10 @@ def hashes_of_files(scene: SceneLike, changes: Mapping[str, Any]) -> list[str]:
             content = json.loads(text_of(scene))
         except ValueError:
             return []  # the program says what is wrong
-    names = list(_files(content))
-    for key, value in changes.items():
-        names += _files({pointer_of(key).rsplit("/", 1)[1]: value})
+    parts = [content, *({pointer_of(key).rsplit("/", 1)[1]: value} for key, value in changes.items())]
+    names = [name for part in parts for name in _named(part, "file")]
+    if cells := {name for part in parts for name in _named(part, "from")}:
+        names += [cell["file"] for cell in call_json("plugins", "--cells") if cell["name"] in cells]
     hashes = []
     for name in names:
         if (folder / name).is_file() and (folder / name).stat().st_size <= 4 << 30:  # more is refused
@@ -125,11 +128,12 @@ def text_of(scene: str | os.PathLike[str]) -> str:
         return ""
 
 
-def _files(value: Any) -> Iterator[str]:
+def _named(value: Any, by: str) -> Iterator[str]:
+    """What the key `by` names, wherever it stands."""
     for part in value.values() if isinstance(value, Mapping) else value if isinstance(value, (list, tuple)) else ():
-        yield from _files(part)
+        yield from _named(part, by)
     if isinstance(value, Mapping):  # a file, or the layers of a picture
-        named = value.get("file")
+        named = value.get(by)
         yield from (os.fspath(name) for name in (named if isinstance(named, (list, tuple)) else [named]) if isinstance(name, (str, os.PathLike)))
 
 

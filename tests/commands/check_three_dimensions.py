@@ -354,6 +354,13 @@ class A_tube(Case):
         first, later = cells[0], next(row for row in cells if row["step"] == flow["step"])
         self.assertAlmostEqual(float(first["wall_gap_m"]), 1.45e-6 - 0.45e-6 - (0.2**2 + 0.45**2)**0.5 * 1e-6, delta=0.05e-6)
         moved = float(later["x_m"]) - float(first["x_m"])
+        # Its axis is that of the tube; it goes as far as its velocity says, which is that over the mean one.
+        self.assertAlmostEqual(float(first["offset_from_axis_m"]), (0.2**2 + 0.45**2)**0.5 * 1e-6, delta=1e-10)
+        self.assertAlmostEqual(float(later["offset_from_axis_m"]), ((float(later["y_m"]) - 1.5e-6)**2 + (float(later["z_m"]) - 1.75e-6)**2)**0.5, delta=1e-18)
+        self.assertAlmostEqual(float(later["velocity_x_m_per_s"]) / float(flow["mean_velocity_m_per_s"]), float(later["velocity_over_mean"]), delta=1e-12)
+        before = cells[cells.index(later) - 1]
+        went = (float(later["x_m"]) - float(before["x_m"])) / (float(later["time_s"]) - float(before["time_s"]))
+        self.assertAlmostEqual(went / float(later["velocity_x_m_per_s"]), 1, delta=0.01)
         self.assertGreater(moved, 1.5e-6)
         self.assertLess(moved, 4e-6)
         self.assertLess(json.loads((folder / "summary.json").read_text())["conservation"]["area_drift_max"], 0.02)
