@@ -203,6 +203,12 @@ def cells_in_space(test, block):
     test.plan(scene | json.loads("{" + block.text.strip().rstrip(",") + "}"))
 
 
+def law_in_space(test, block):
+    scene = json.loads((SOURCE / "scenes/suspension-3d.json").read_text())
+    scene["cell_types"]["rbc"]["membrane"].append(json.loads(block.text))
+    test.plan(scene)
+
+
 def other_settings(test, block):
     """Keys that replace those of the whole scene; more than one setting of a key stands for alternatives."""
     for text in re.split(r"\n\s*\n", block.text):
@@ -273,6 +279,7 @@ def fuzz_target(test, block):
 BLOCKS = [
     ("README.md", "#include <rouleau/interaction.hpp>", model(lambda: shipped_manifest("morse"))),
     ("README.md", "find_package(Rouleau REQUIRED COMPONENTS core)", "the same two lines as a project: tests/sdk/check_core.py builds it"),
+    ("docs/models.md", '{"model": "lim"', law_in_space),
     ("docs/models.md", '{"model": "viscous"', part_of_scene("membrane")),
     ("docs/models.md", '{"model": "standard-linear-solid"', part_of_scene("membrane")),
     ("docs/models.md", '{"between": ["rbc", "rbc"], "model": "bridging"', part_of_scene("interactions")),
@@ -282,6 +289,7 @@ BLOCKS = [
     ("docs/models.md", "template <class S>\nrouleau::Pair<S> operator()(const rouleau::Contact<S>& contact)",
      lambda test, block: test.conform(FILM_SOURCE % block.text, FILM)),
     ("docs/scene.md", '{\n  "rouleau": 1', lambda test, block: test.plan(block.text)),
+    ("docs/scene.md", '"cell_types": { "rbc": { "from"', cells_in_space),
     ("docs/scene.md", '{"type": "rbc", "at"', part_of_scene("cells")),
     ("docs/scene.md", '{"type": "rbc", "row"', part_of_scene("cells")),
     ("docs/scene.md", '{"type": "rbc", "list"', part_of_scene("cells")),
