@@ -60,6 +60,8 @@ Value members_of_aggregate(const Row& row) {
   return aggregate.members;
 }
 
+// Name, unit, doc, value and, where a chart draws it, its title and the name of the line.
+
 /// What every table begins with.
 constexpr Observable instant_columns[] = {
     {"step", "", "number of the step, over all stages", output<&Snapshot::step>},
@@ -74,6 +76,7 @@ constexpr Observable cell_columns[] = {
     {"type", "", "its type", cell<&CellSnapshot::type>},
     {"x", "m", "centroid of what the membrane encloses; not wrapped into the periodic box", cell<&CellSnapshot::x>},
     {"y", "m", "likewise", cell<&CellSnapshot::y>},
+<<<<<<< HEAD
     {.name = "angle",
      .unit = "rad",
      .doc = "of the long axis against x, counter-clockwise, followed over turns; `nan` for a circle",
@@ -98,6 +101,27 @@ constexpr Observable cell_columns[] = {
          "walls",
      .value = cell<&CellSnapshot::wall_gap>,
      .chart = "Smallest gap to a wall"},
+=======
+    {"angle", "rad",
+     "of the long axis of the inertia ellipse against x, counter-clockwise, followed over turns; `nan` "
+     "for a circle (deformation below 1e-6), which has none; in three dimensions of the longer of the two "
+     "axes of the inertia ellipsoid that lie nearest to the plane of x and y",
+     cell<&CellSnapshot::angle>, "Angle of the long axis"},
+    {"deformation", "",
+     "(L - B)/(L + B) with the axes L > B of the ellipse that has the enclosed area's second moments; in "
+     "three dimensions of the two axes of the ellipsoid that lie nearest to the plane of x and y",
+     cell<&CellSnapshot::deformation>, "Deformation (L − B)/(L + B)"},
+    {"area", "m2", "that the outline encloses; empty in three dimensions", of_outline<&CellSnapshot::area>},
+    {"perimeter", "m", "of the outline; empty in three dimensions", of_outline<&CellSnapshot::perimeter>},
+    {"min_gap", "m",
+     "to the nearest outline of another cell or of any periodic image; `inf` where there is none; in three "
+     "dimensions between nodes and triangles, up to half of the shortest period",
+     cell<&CellSnapshot::min_gap>, "Smallest gap to another cell"},
+    {"wall_gap", "m",
+     "smallest distance of the membrane's nodes to a wall, whatever its shape; negative beyond it, `nan` without "
+     "walls",
+     cell<&CellSnapshot::wall_gap>, "Smallest gap to a wall"},
+>>>>>>> 0ff7cb10 (Columns that charts draw are written as the others are)
     {"aggregate", "", "label of the cell's aggregate: the smallest number of its cells",
      cell<&CellSnapshot::aggregate>},
     {"tank_treading_angle", "rad",
@@ -137,11 +161,8 @@ constexpr Observable aggregate_columns[] = {
 constexpr Observable series_columns[] = {
     {"stage", "", "number of the stage, from 0", output<&Snapshot::stage>},
     {"stage_name", "", "its name", output<&Snapshot::stage_name>},
-    {.name = "aggregate_count",
-     .unit = "",
-     .doc = "number of aggregates; single cells included",
-     .value = output<&Snapshot::aggregate_count>,
-     .chart = "Aggregates, single cells included"},
+    {"aggregate_count", "", "number of aggregates; single cells included", output<&Snapshot::aggregate_count>,
+     "Aggregates, single cells included"},
     {.name = "rotation",
      .unit = "rad",
      .doc = "that of the largest aggregate in aggregates.csv (of equal ones the first); `nan` where it has none",
@@ -172,6 +193,7 @@ constexpr Observable series_columns[] = {
             "where the stage has none",
      .value = output<&Snapshot::pressure_gradient>,
      .has_means = true},
+<<<<<<< HEAD
     {.name = "particle_stress",
      .unit = "Pa",
      .doc = "xy stress that the cells add: all forces on membranes, between cells too, and viscosity contrast, "
@@ -198,6 +220,24 @@ constexpr Observable series_columns[] = {
      .doc = "largest change of a cell's area or volume that `numerics.area_correction` put back; `nan` without it",
      .value = output<&Snapshot::area_leakage_max>,
      .chart = "Largest area kept from leaking, relative"},
+=======
+    {"particle_stress", "Pa",
+     "xy stress that the cells add: all forces on membranes, between cells too, and viscosity contrast, "
+     "per area of the domain",
+     output<&Snapshot::particle_stress>, "Particle stress xy"},
+    {"mach_max", "", "largest Mach number of the lattice flow at this instant", output<&Snapshot::mach_max>,
+     "Largest Mach number"},
+    {"area_drift_max", "", "largest relative change of a cell's area since the start, of all cells, at this instant",
+     output<&Snapshot::area_drift_max>, "Largest relative area drift"},
+    {"mass_drift", "",
+     "largest relative change of the fluid's mass within a stage, so far; 0 between openings, whose flows tell",
+     output<&Snapshot::mass_drift>, "Relative mass drift"},
+    {"area_leakage_max", "",
+     "of all cells, the largest change of area, in three dimensions of volume, that "
+     "`numerics.area_correction` put back while the flow strained by about 1, over the area or volume; "
+     "at rest it adds up; `nan` without the correction",
+     output<&Snapshot::area_leakage_max>, "Largest area kept from leaking, relative"},
+>>>>>>> 0ff7cb10 (Columns that charts draw are written as the others are)
     {.name = "flow_rate",
      .unit = "m2/s",
      .doc = "of a driven channel, per depth: integral of the velocity over the cross-section; `nan` elsewhere",
@@ -244,61 +284,30 @@ constexpr Observable series_columns[] = {
      .value = output<&Snapshot::aggregate_size_weight_mean>,
      .chart = "Aggregate size, mean over cells",
      .has_means = true},
-    {.name = "kinetic_energy",
-     .unit = "J/m",
-     .doc = "of the fluid as it is simulated, `density_factor` times denser than it is; docs/physics.md, "
-            "\"Energy\", for this and all below, which are per depth",
-     .value = energy<&EnergySnapshot::kinetic>,
-     .chart = "Kinetic energy of the fluid as simulated"},
-    {.name = "elastic_energy",
-     .unit = "J/m",
-     .doc = "in the membranes: laws of segments and of whole cells; `nan` without cells",
-     .value = energy<&EnergySnapshot::elastic>,
-     .chart = "Energy of the cells",
-     .line = "elastic"},
-    {.name = "bending_energy",
-     .unit = "J/m",
-     .doc = "in the membranes: laws of curvature; `nan` without cells",
-     .value = energy<&EnergySnapshot::bending>,
-     .chart = "Energy of the cells",
-     .line = "bending"},
-    {.name = "interaction_energy",
-     .unit = "J/m",
-     .doc = "of the active potentials between cells, and between cells and walls; `nan` where there is none",
-     .value = energy<&EnergySnapshot::interaction>,
-     .chart = "Energy of the cells",
-     .line = "interaction"},
-    {.name = "total_energy",
-     .unit = "J/m",
-     .doc = "the sum of those that there are; `nan` where a law acts whose energy is not known (summary.json says "
-            "which)",
-     .value = energy<&EnergySnapshot::total>,
-     .chart = "Energy of the cells",
-     .line = "total"},
-    {.name = "viscous_dissipation",
-     .unit = "W/m",
-     .doc = "what the fluid's viscosity takes",
-     .value = energy<&EnergySnapshot::viscous_dissipation>,
-     .chart = "Power",
-     .line = "dissipation in the fluid"},
-    {.name = "membrane_dissipation",
-     .unit = "W/m",
-     .doc = "what viscous membranes and those with a memory take; `nan` without cells",
-     .value = energy<&EnergySnapshot::membrane_dissipation>,
-     .chart = "Power",
-     .line = "in membranes"},
-    {.name = "wall_power",
-     .unit = "W/m",
-     .doc = "what both walls together put in; 0 for walls at rest, `nan` without walls and before they have acted",
-     .value = energy<&EnergySnapshot::wall_power>,
-     .chart = "Power",
-     .line = "from the walls"},
-    {.name = "body_force_power",
-     .unit = "W/m",
-     .doc = "what `fluid.body_force` and the pressure gradient put in; `nan` where neither acts",
-     .value = energy<&EnergySnapshot::body_force_power>,
-     .chart = "Power",
-     .line = "from the body force"},
+    {"kinetic_energy", "J/m",
+     "of the fluid as it is simulated, `density_factor` times denser than it is; docs/physics.md, "
+     "\"Energy\", for this and all below, which are per depth",
+     energy<&EnergySnapshot::kinetic>, "Kinetic energy of the fluid as simulated"},
+    {"elastic_energy", "J/m", "in the membranes: laws of segments and of whole cells; `nan` without cells",
+     energy<&EnergySnapshot::elastic>, "Energy of the cells", "elastic"},
+    {"bending_energy", "J/m", "in the membranes: laws of curvature; `nan` without cells",
+     energy<&EnergySnapshot::bending>, "Energy of the cells", "bending"},
+    {"interaction_energy", "J/m",
+     "of the active potentials between cells, and between cells and walls; `nan` where there is none",
+     energy<&EnergySnapshot::interaction>, "Energy of the cells", "interaction"},
+    {"total_energy", "J/m",
+     "the sum of those that there are; `nan` where a law acts whose energy is not known (summary.json says "
+     "which)",
+     energy<&EnergySnapshot::total>, "Energy of the cells", "total"},
+    {"viscous_dissipation", "W/m", "what the fluid's viscosity takes", energy<&EnergySnapshot::viscous_dissipation>,
+     "Power", "dissipation in the fluid"},
+    {"membrane_dissipation", "W/m", "what viscous membranes and those with a memory take; `nan` without cells",
+     energy<&EnergySnapshot::membrane_dissipation>, "Power", "in membranes"},
+    {"wall_power", "W/m",
+     "what both walls together put in; 0 for walls at rest, `nan` without walls and before they have acted",
+     energy<&EnergySnapshot::wall_power>, "Power", "from the walls"},
+    {"body_force_power", "W/m", "what `fluid.body_force` and the pressure gradient put in; `nan` where neither acts",
+     energy<&EnergySnapshot::body_force_power>, "Power", "from the body force"},
 };
 
 constexpr Observable size_columns[] = {
