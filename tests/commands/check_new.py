@@ -132,6 +132,41 @@ class New_makes_a_model(Case):
         self.assertEqual(commands[3][-1], "/interactions/0/model=stiff")
 
 
+class Shipped_cells(Case):
+    def test_are_listed_each_number_with_its_source(self):
+        files = {file.stem: json.loads(file.read_text()) for file in (SOURCE / "cells").glob("*.json")}
+        words = self.call("plugins", "--cells").stdout
+        for name, cell in files.items():
+            self.assertIn(name, words)
+            self.assertIn(cell["title"][:30], words)
+            one = self.call("plugins", "--cells", name).stdout
+            for pointer, source in cell["sources"].items():
+                self.assertIn(f"  {pointer}  ", one)
+                self.assertIn("source: " + source["source"][:20], one)
+        said = json.loads(self.call("plugins", "--cells", "--json").stdout)
+        self.assertEqual({cell["name"]: cell["cell_type"] for cell in said}, {name: cell["cell_type"] for name, cell in files.items()})
+        self.assert_stops(self.call("plugins", "--cells", "human-red"), 2, "no shipped cell", 'did you mean "human-red-cell"')
+        self.assert_stops(self.call("plugins", "--cells", "--lock", SCENE), 2, "give one of these alone")
+
+    def test_of_another_installation_change_no_run_that_goes_on(self):
+        self.new("scene", "red-cell-3d")
+        run = ["--quiet", "--no-error-bar", "--set", "/output/cells/strain=0.005"]
+        whole, paused = self.desk / "whole", self.desk / "paused"
+        for out, steps in ((whole, 20), (paused, 10)):
+            done = self.call("run", "red-cell-3d.json", "--out", out, "--max-steps", steps, *run)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        cell = self.program.parent.parent / "share/rouleau/cells/human-red-cell.json"
+        cell.write_text(cell.read_text().replace('"6 mPa s"', '"9 mPa s"'))
+        on = ["--out", paused, "--resume", "--max-steps", 20]
+        refused = self.call("run", "red-cell-3d.json", *on, *run)
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        self.assertIn('/cell_types/rbc/interior_viscosity: "6 mPa s" in the checkpoint, "9 mPa s" now', refused.stderr)
+        done = self.call("run", paused / "scene.json", *on, *run[:2])
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for name in ("scene.json", "cells.csv", "series.csv"):
+            self.assertEqual((whole / name).read_bytes(), (paused / name).read_bytes(), name)
+
+
 class New_scene(Case):
     TEMPLATES = {"demo": "two dimensions, 2 cells", "channel": "two dimensions, 14 cells", "suspension": "two dimensions, 17 cells",
                  "capsule": "two dimensions, 1 cell,", "vessel": "two dimensions, 13 cells", "suspension-3d": "three dimensions, 14 cells",
