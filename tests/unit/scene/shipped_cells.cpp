@@ -86,8 +86,8 @@ TEST_CASE("a name that no shipped cell has is refused, and nothing that follows 
   Json all = shipped_cell("capsule", {"nowhere", "", 0, 0}).content["cell_type"];
   all["from"] = "capsule";
   CHECK_THAT(words(scene_with(all)), Contains("gives nothing here"));
-  CHECK_THAT(words(scene_with({{"interior_viscosity", "1 cP"}})),
-             Contains("\"shape\" is missing") && Contains("\"membrane\" is missing"));
+  CHECK_THAT(words(scene_with({{"interior_viscosity", "1 cP"}})), Contains("\"shape\" is missing"));
+  CHECK_THAT(words(scene_with({{"shape", {{"sphere", {{"radius", "2 um"}}}}}})), Contains("\"membrane\" is missing"));
 }
 
 TEST_CASE("each number of a shipped cell has its source and its spread, and no source is of something else") {
