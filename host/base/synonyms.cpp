@@ -14,8 +14,8 @@ constexpr Synonym table[] = {
     {"mu", "viscosity"},
     {"eta", "viscosity"},
     {"dynamic_viscosity", "viscosity"},
-    {"gravity", "body_force"},
-    {"acceleration", "body_force"},
+    {"acceleration", "gravity"},
+    {"g", "gravity"},
     {"force", "body_force"},
     {"convection", "inertia"},
     {"operator", "collision"},
@@ -65,6 +65,9 @@ constexpr Synonym table[] = {
     {"internal_viscosity", "interior_viscosity"},
     {"viscosity_ratio", "interior_viscosity"},
     {"viscosity_contrast", "interior_viscosity"},
+    {"inner_density", "interior_density"},
+    {"internal_density", "interior_density"},
+    {"density", "interior_density"},
     {"vertices", "segments"},
     {"nodes", "segments"},
     {"points", "segments"},
@@ -94,6 +97,11 @@ constexpr Synonym table[] = {
     {"pressure_difference", "pressure_gradient"},
     {"time", "duration"},
     {"end_time", "duration"},
+    {"force", "forces"},
+    {"pull", "forces"},
+    {"tweezers", "forces"},
+    {"direction", "toward"},
+    {"fraction", "share"},
 };
 
 }  // namespace

@@ -208,4 +208,27 @@ void describe_surface(const CellMeasures& measures, const units::LatticeUnits& u
   cell.offset_from_axis = has_axis ? std::hypot(off(cell.y, 1), off(cell.z, 2)) : std::nan("");
 }
 
+void measure_pulled(const scene::Scene& scene, const core::CellNodes& nodes, CellMeasures& measures) {
+  const scene::CellForce* first = nullptr;
+  for (const scene::Stage& stage : scene.stages) {
+    for (const scene::CellForce& force : stage.forces)
+      if (first == nullptr && force.pulls_at(measures.cell) && force.force != scene::Vector()) first = &force;
+  }
+  if (first == nullptr) return;
+  const scene::Vector along = 1 / first->force.norm() * first->force;
+  const double in_plane = std::hypot(along.x(), along.y());
+  const scene::Vector across = in_plane > 0 ? 1 / in_plane * scene::Vector(-along.y(), along.x()) : scene::Vector(1, 0);
+  const core::CellRange& range = nodes.cells[measures.cell];
+  const auto extent = [&](const scene::Vector& axis) {
+    double least = INFINITY, most = -INFINITY;
+    for (int i = range.first; i < range.end(); ++i) {
+      double place = 0;
+      for (int k = 0; k < axis.dimension(); ++k) place += axis[k] * nodes.position[k][i];
+      least = std::min(least, place), most = std::max(most, place);
+    }
+    return most - least;
+  };
+  measures.length_along_force = extent(along), measures.width_across_force = extent(across);
+}
+
 }  // namespace rouleau::observe

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/geometry/region.hpp"
@@ -33,7 +34,11 @@ struct CellMeasures {
   double velocity = 0;                 ///< along x, mean over what the cell encloses
   double treading = 0;                 ///< of the membrane within its shape, counter-clockwise about z, rad per step
   double rear_hollow = 0;              ///< CellSnapshot::rear_hollow
+  double length_along_force = std::numeric_limits<double>::quiet_NaN(), width_across_force = length_along_force;
 };
+
+/// Adds its extents along and across the first force in the scene's stages that pulls at the cell, if one does.
+void measure_pulled(const scene::Scene& scene, const core::CellNodes& nodes, CellMeasures& measures);
 
 /// `region`: of the fluid (scene::fluid_region); null: planes alone close the domain. `marker`: the node that is
 /// followed, counted from the cell's first; of an outline the first one is.

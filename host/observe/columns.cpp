@@ -241,8 +241,16 @@ constexpr Observable series_columns[] = {
     {"wall_power", "W/m",
      "what both walls together put in; 0 for walls at rest, `nan` without walls and before they have acted",
      energy<&EnergySnapshot::wall_power>, "Power", "from the walls"},
-    {"body_force_power", "W/m", "what `fluid.body_force` and the pressure gradient put in; `nan` where neither acts",
+    {"body_force_power", "W/m",
+     "what `fluid.body_force`, the pressure gradient and what balances cells' weight put in; `nan` without any",
      energy<&EnergySnapshot::body_force_power>, "Power", "from the body force"},
+    {.name = "external_power",
+     .unit = "W/m",
+     .doc = "what a stage's `forces` and the cells' weight put in; `nan` in a stage without",
+     .value = energy<&EnergySnapshot::external_power>,
+     .chart = "Power",
+     .line = "from forces on cells",
+     .of_external = true},
 };
 
 constexpr Observable size_columns[] = {
@@ -297,6 +305,15 @@ std::vector<Observable> columns_of_cells() {
   add("offset_from_axis", "m",
       "of the centroid from the axis of a tube or duct, or the plane amid two walls (slipper); `nan` elsewhere",
       cell<&CellSnapshot::offset_from_axis>);
+  const auto along_force = [&](auto name, auto doc, Value (*value)(const Row&), auto chart) {
+    all.push_back({.name = name, .unit = "m", .doc = doc, .value = value, .chart = chart, .of_pulled = true});
+  };
+  along_force("length_along_force",
+              "extent of the membrane's nodes along the first force in the stages that pulls at the cell, or `nan`",
+              cell<&CellSnapshot::length_along_force>, "Length along the force");
+  along_force("width_across_force",
+              "their extent at right angles to it in the plane of x and y; along x where it acts along z",
+              cell<&CellSnapshot::width_across_force>, "Width across the force");
   return all;
 }
 std::vector<Observable> columns_of_aggregates() { return with_instant(aggregate_columns); }

@@ -31,7 +31,7 @@ const std::array<Table, 4>& tables();
 /// That of this name; throws std::out_of_range where there is none.
 const Table& table(std::string_view name);
 
-/// [{name, columns: [{column, unit, doc, has_means, in_space, in_plane, at_openings, of_traffic}]}], for scripts/docs.
+/// [{name, columns: [{column, unit, doc, has_means, in_space, in_plane, at_openings, ...}]}], for scripts/docs.
 nlohmann::json columns_json();
 
 }  // namespace rouleau::observe

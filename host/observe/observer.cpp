@@ -157,6 +157,7 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
   for (const int c : cells.own_cells()) {
     measures.push_back(measure(cells, c, domain, region.get(), marker_[c]));
     measures.back().gap = gaps[c];
+    measure_pulled(*scene_, cells, measures.back());
   }
   measures = core::to_first(ranks, std::move(measures));
   if (!ranks.first()) return;
@@ -189,6 +190,8 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
     s.aggregate = aggregates.label[k];
     s.through_image = aggregates.through_image[k];
     follow_stretch(m.stretch, s);
+    s.length_along_force = m.length_along_force * length;
+    s.width_across_force = m.width_across_force * length;
     describe_surface(m, units, scene_->domain, s);
     snapshot.cells.push_back(std::move(s));
   }

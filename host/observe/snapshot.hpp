@@ -25,6 +25,8 @@ struct CellSnapshot {
   int aggregate;       ///< label: smallest index of a cell of the aggregate it belongs to
   bool through_image;  ///< its aggregate is held together by a contact across the periodic boundary
   double stretch_min, stretch_max;  ///< of its segments or edges: length over rest length
+  double length_along_force = std::numeric_limits<double>::quiet_NaN();  ///< m; NaN: no force pulls at the cell
+  double width_across_force = length_along_force;                        ///< m, likewise
   // Of a surface, angle and deformation of which are those of the plane of x and y; 0 of an outline.
   double z = 0;                        ///< centroid, m
   double volume = 0;                   ///< m3
@@ -105,7 +107,7 @@ struct EnergySnapshot {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   double kinetic = none, elastic = none, bending = none, interaction = none, total = none;  ///< J/m
   double viscous_dissipation = none, membrane_dissipation = none;                           ///< W/m, lost
-  double wall_power = none, body_force_power = none;                                        ///< W/m, put in
+  double wall_power = none, body_force_power = none, external_power = none;                 ///< W/m, put in
   std::string unknown;  ///< why the total is not known; empty: it is
 };
 

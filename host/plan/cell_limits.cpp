@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "base/text.hpp"
@@ -82,6 +83,37 @@ void add_travel(const LimitedStage& of, LimitList& limits) {
   const CellTravel& travel = of.facts.travel;
   if (!frame_follows[of.by_dimension] && travel.mean > 0) add("move through the lattice", travel.mean);
   if (travel.spread > 0) add("pass each other", travel.spread);
+}
+
+/// By Stokes' drag on a sphere; of a cylinder, which has none of its own, in the box.
+void add_forces_on_cells(const LimitedStage& of, LimitList& limits) {
+  const scene::Stage& stage = *of.stage.stage;
+  const scene::Vector& gravity = of.scene.fluid.gravity;
+  if (stage.forces.empty() && gravity == scene::Vector()) return;
+  const int dimension = of.scene.domain.dimension();
+  const double radius = shape::smallest_radius(of.scene), box = of.scene.domain.size.least();
+  const double pi = std::numbers::pi, viscosity = of.scene.fluid.viscosity;
+  const double drag =
+      viscosity * std::array{4 * pi / std::max(1.0, std::log(box / radius)), 6 * pi * radius}[of.by_dimension];
+  double patch = 0, cell = 0;  // speeds, m/s
+  for (const scene::CellForce& pull : stage.forces)
+    patch = std::max(
+        patch, std::max(pull.force.norm(), pull.before.norm()) / drag / std::pow(pull.share, 1.0 / (dimension - 1)));
+  for (std::size_t c = 0; c < of.scene.cells.size(); ++c) {
+    const scene::CellType& type = of.scene.cell_types[of.scene.cells[c].type];
+    scene::Vector force = (type.interior_density - of.scene.fluid.density) * shape::enclosed_by(type) * gravity;
+    for (const scene::CellForce& pull : stage.forces)
+      force += (pull.pulls_at(static_cast<int>(c)) ? 1 : 0) * pull.force;
+    cell = std::max(cell, force.norm() / drag);
+  }
+  if (patch > 0)
+    limits.below("Mach number of membranes that forces pull at" + of.where,
+                 units::mach_number(patch * of.stage.units.time / of.stage.units.length), largest_driven_mach,
+                 of.lower + " or the force, or let it act on a larger patch", of.density);
+  if (cell > 0 && !of.scene.fluid.inertia)
+    limits.below("Reynolds number of cells that forces move, without convective inertia" + of.where,
+                 of.scene.fluid.density * stage.density_factor * cell * radius / viscosity, largest_travel,
+                 of.lower + ", or set fluid.inertia to true", of.density);
 }
 
 namespace {

@@ -30,6 +30,7 @@ bool reports_moments(const Plan& plan);
 void add_compression(const LimitedStage& of, LimitList& limits);
 void add_leak(const LimitedStage& of, LimitList& limits);
 void add_travel(const LimitedStage& of, LimitList& limits);
+void add_forces_on_cells(const LimitedStage& of, LimitList& limits);
 void add_stiffness(const LimitedStage& of, LimitList& limits);
 void add_slip_and_prestress(const LimitedStage& of, LimitList& limits);
 void add_potentials(const LimitedStage& of, LimitList& limits);

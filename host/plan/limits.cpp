@@ -141,6 +141,7 @@ constexpr std::array stage_limits{
     StageLimits{.add = add_compression, .of_cells = true},
     StageLimits{.add = add_leak, .of_cells = true},
     StageLimits{.add = add_travel, .of_cells = true},
+    StageLimits{.add = add_forces_on_cells, .of_cells = true},
     StageLimits{.add = add_stiffness, .of_cells = true},
     StageLimits{.add = add_slip_and_prestress, .of_cells = true},
     StageLimits{.add = add_potentials, .of_cells = true},

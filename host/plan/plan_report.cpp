@@ -20,9 +20,21 @@ namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
+/// Per volume, that of what pulls at cells included.
+scene::Vector outer_force(const scene::Stage& stage, const scene::Scene& scene) {
+  scene::Vector force = scene::driving_force(stage, scene);
+  double magnitude = force.norm();
+  for (const scene::CellForce& pull : stage.forces) {
+    const auto count = static_cast<double>(pull.cells.empty() ? scene.cells.size() : pull.cells.size());
+    const scene::Vector part = count / scene.domain.content() * pull.force;
+    force += part, magnitude += part.norm();
+  }
+  return force.norm() > 1e-9 * magnitude ? force : scene::Vector();
+}
+
 /// A force on a fluid that is periodic along all axes meets no wall that could balance it.
 bool accelerates_for_ever(const scene::StageSetting& stage, const scene::Scene& scene) {
-  return !scene::has_walls(scene.domain) && scene::driving_force(*stage.stage, scene) != scene::Vector();
+  return !scene::has_walls(scene.domain) && outer_force(*stage.stage, scene) != scene::Vector();
 }
 
 /// Share of the domain's area or volume that all cells enclose at rest.
@@ -203,7 +215,7 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
   for (const scene::StageSetting& stage : plan.stages) {
     if (!accelerates_for_ever(stage, scene)) continue;
     const double factor = stage.stage->density_factor;
-    const double acceleration = scene::driving_force(*stage.stage, scene).norm() / scene.fluid.density;
+    const double acceleration = outer_force(*stage.stage, scene).norm() / scene.fluid.density;
     const std::string simulated = ", which as it is simulated, " + number(factor, 4) + " times as dense (" +
                                   stage.stage->density_factor_key + "), is " + number(acceleration / factor, 3) +
                                   " m/s";
@@ -211,7 +223,7 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
                        scene.domain.words().axes + ", so no wall holds it and it gains " + number(acceleration, 3) +
                        " m/s every second" + (factor != 1 ? simulated : "") +
                        ", for as long as the stage lasts; give domain.y walls, or leave out fluid.body_force and "
-                       "pressure_gradient");
+                       "pressure_gradient, or balance the forces on cells");
   }
   if (const int ranks = scene::fewest_ranks(scene.domain); ranks > 1) {
     warnings.push_back("the lattice has " + number(scene.domain.node_count(), 12) + " nodes and one rank can compute " +

@@ -119,6 +119,26 @@ void complete_feed(scene::Scene& scene) {
               {"make the domain at least twice as long, or give the cells a length of their own"});
 }
 
+/// What forces pull at, once all cells are known: a patch is known of those that are placed.
+void check_forced_cells(const scene::Scene& scene) {
+  const auto refuse = [&](const std::string& pointer, const std::string& problem, const char* remedy) {
+    throw Error(Cause::bad_input, scene.place(pointer), problem, {remedy});
+  };
+  for (const scene::Stage& stage : scene.stages) {
+    for (const scene::CellForce& force : stage.forces) {
+      const auto last = force.cells.empty() ? scene.cells.size() - 1 : static_cast<std::size_t>(force.cells.back());
+      if (last >= scene.cells.size())
+        refuse(force.pointer + "/cells",
+               "there is no cell " + std::to_string(last) + "; the scene has " + std::to_string(scene.cells.size()) +
+                   ", numbered from 0",
+               "take smaller numbers, or leave cells out for all of them");
+      if (last >= scene.placed().size() && force.toward != scene::Vector())
+        refuse(force.pointer + "/patch", "patches are of cells as placed, and some of these come in through the inlet",
+               "leave patch out, or name cells that are placed");
+    }
+  }
+}
+
 /// The scene with all values. Faults are added; with some, it is what could be read. `former`: what was read with other
 /// bounds, or null.
 ReadScene completed(const OpenScene& open, const NumericsBounds& bounds, Faults& faults,
@@ -134,6 +154,7 @@ ReadScene completed(const OpenScene& open, const NumericsBounds& bounds, Faults&
   }
   if (faults.empty()) faults.attempt([&] { shape::add_random_cells(read.scene); });
   if (faults.empty()) faults.attempt([&] { shape::add_fed_cells(read.scene); });
+  if (faults.empty()) faults.attempt([&] { check_forced_cells(read.scene); });
   return read;
 }
 

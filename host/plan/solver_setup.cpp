@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "constants.hpp"
 #include "core/geometry/border_of_region.hpp"
 #include "core/geometry/parts.hpp"
+#include "placed_cells.hpp"
+#include "scene/driving_flow.hpp"
 #include "shape/walls.hpp"
 
 namespace rouleau::plan {
@@ -40,6 +44,86 @@ double inlet_share(const scene::Scene& scene, const LatticeWalls<D>& walls) {
                 "the inlet leads into a wall: none of the lattice's nodes there is fluid",
                 {"let the walls leave it open, or take more nodes"});
   return area / nodes;
+}
+
+/// What lies furthest toward a direction, until it has the share of the membrane; of nodes that lie equally far all,
+/// and of the last of these so much of each as is wanted.
+core::ForcePatch make_patch(const std::vector<double>& along, const std::vector<double>& measure, double share) {
+  std::vector<int> order(along.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return along[a] > along[b]; });
+  const double equal = 1e-9 * (along[order.front()] - along[order.back()]);
+  const double wanted = share * std::accumulate(measure.begin(), measure.end(), 0.0);
+  core::ForcePatch patch;
+  double left = wanted;
+  for (std::size_t first = 0, end = 0; first < order.size() && left > 1e-12 * wanted;) {
+    double group = 0;
+    while (end < order.size() && along[order[end]] >= along[order[first]] - equal) group += measure[order[end++]];
+    for (; first < end; ++first) {
+      patch.node.push_back(order[first]);
+      patch.share.push_back(std::min(1.0, left / group) * measure[order[first]] / wanted);
+    }
+    left -= group;
+  }
+  return patch;
+}
+
+template <int D>
+core::Cells<D> placed_alone(const core::Cells<D>& types, scene::CellPlacement cell, double spacing) {
+  core::Cells<D> one;
+  one.types = types.types;
+  cell.center = scene::Vector::filled(D, 0);
+  add_placed(one, cell, spacing);
+  return one;
+}
+
+/// Of each cell, where a force acts on it; cells that are placed alike share it.
+template <int D>
+std::vector<std::shared_ptr<const core::ForcePatch>> patches(const scene::Scene& scene, const scene::CellForce& force,
+                                                             const core::Cells<D>& types) {
+  std::vector<std::shared_ptr<const core::ForcePatch>> of_cell(scene.cells.size());
+  std::map<std::array<double, 5>, std::shared_ptr<const core::ForcePatch>> alike;
+  for (std::size_t c = 0; c < of_cell.size(); ++c) {
+    if (!force.pulls_at(static_cast<int>(c))) continue;
+    const scene::CellPlacement& cell = scene.cells[c];
+    const Eigen::Vector3d axis = cell.axis.value_or(Eigen::Vector3d::Zero());
+    auto& patch = alike[{static_cast<double>(cell.type), cell.angle, axis.x(), axis.y(), axis.z()}];
+    if (!patch) {
+      const core::Cells<D> one = placed_alone<D>(types, cell, scene::lattice_spacing(scene));
+      std::vector<double> along;
+      for (int i = 0; i < one.node_count(); ++i)
+        along.push_back(force.toward.template in<D>().dot(core::vector_at<D>(one.position, i)));
+      patch = std::make_shared<const core::ForcePatch>(
+          make_patch(along, types.types[cell.type]->node_measure(), force.share));
+    }
+    of_cell[c] = patch;
+  }
+  return of_cell;
+}
+
+/// What acts on cells from outside. Where nothing holds the fluid it is held against their weight, on average.
+template <int D>
+void add_external_forces(const scene::Scene& scene, const scene::StageSetting& stage,
+                         core::BasicSolverSetup<D>& setup) {
+  const scene::Vector& gravity = scene.fluid.gravity;
+  if (stage.stage->forces.empty() && gravity == scene::Vector()) return;
+  const core::Cells<D> types = without_cells<D>(scene, stage.units.length);
+  const double force = stage.units.unit(units::dimension::force(D));
+  for (const scene::CellForce& pull : stage.stage->forces)
+    setup.external.pulls.push_back({.before = pull.before.template in<D>() / force,
+                                    .after = pull.force.template in<D>() / force,
+                                    .ramp_steps = pull.ramp / stage.units.time,
+                                    .patch = patches<D>(scene, pull, types)});
+  if (gravity == scene::Vector()) return;
+  for (const scene::CellType& type : scene.cell_types)
+    setup.external.weight.emplace_back((type.interior_density - scene.fluid.density) /
+                                       stage.units.unit(units::dimension::force_density) * gravity.template in<D>());
+  if (scene::has_walls(scene.domain) || scene.domain.is_open()) return;
+  core::Vec<D> held = core::Vec<D>::Zero();
+  for (const scene::CellPlacement& cell : scene.cells)
+    held += core::rest_content(placed_alone<D>(types, cell, 1), 0) * setup.external.weight[cell.type];
+  double* const body_force[] = {&setup.body_force_x, &setup.body_force_y, &setup.body_force_z};
+  for (int k = 0; k < D; ++k) *body_force[k] -= held[k] / scene.domain.node_count();
 }
 
 }  // namespace
@@ -115,6 +199,7 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index, const L
     type.viscosity_ratio = scene.cell_types[t].interior_viscosity / scene.fluid.viscosity;
     type.laws = made.membranes[t];
   }
+  add_external_forces(scene, stage, setup);
   for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
     if (!plan.interactions[i].active()) continue;
     const scene::Interaction& interaction = scene.interactions[i];

@@ -99,12 +99,15 @@ Shown shown(const observe::Observable& observable) {
   return {observable.column(), std::string(observable.unit), 1};
 }
 
-/// What charts there are and which lines each has, in the order of the columns. `traffic`: cells may come or leave.
-Json charts(bool traffic) {
+/// What charts there are and which lines each has, in the order of the columns. Of what not every run has, those that
+/// cells.csv (null: not read) or series.csv has.
+Json charts(const files::StoredTable* cells, const files::StoredTable& series) {
   Json list = Json::array();
   for (const char* table : {"cells", "series"}) {
     for (const observe::Observable& observable : observe::table(table).observables) {
-      if (observable.chart.empty() || (observable.of_traffic && !traffic)) continue;
+      const bool in_some = observable.of_traffic || observable.of_pulled || observable.of_external;
+      const auto there = [&](const auto* one) { return one != nullptr && one->has(observable.column()); };
+      if (observable.chart.empty() || (in_some && !there(cells) && !there(&series))) continue;
       const Shown as = shown(observable);
       auto chart =
           std::find_if(list.begin(), list.end(), [&](const Json& c) { return c["title"] == observable.chart; });
@@ -135,7 +138,7 @@ Json cell_data(const files::StoredTable& table, const CellRows& rows, std::size_
     cells["aggregate"].push_back(std::move(labels));
   }
   for (const observe::Observable& observable : observe::table("cells").observables) {
-    if (observable.chart.empty()) continue;
+    if (observable.chart.empty() || !table.has(observable.column())) continue;
     const Shown as = shown(observable);
     cells[as.name] = lines(table.numbers(observable.column()), rows, shown_cells, selection, as.factor);
   }
@@ -325,7 +328,7 @@ Json report_data(const std::filesystem::path& directory) {
 
   data["shown"] = {{"outputs", selection.size()}, {"of", outputs}, {"node_stride", stride}};
   add_instants(series, selection, data);
-  data["charts"] = charts(series.has("cells_inside"));
+  data["charts"] = charts(cells ? &*cells : nullptr, series);
   data["series"] = series_data(series, selection);
   data["cells"] = count > 0 && outputs > 0 ? cell_data(*cells, *rows, outputs, selection) : Json(nullptr);
   data["outlines"] = data["fields"] = data["surfaces"] = data["walls"] = nullptr;

@@ -252,7 +252,7 @@ class Simulation final : StepHooks {
       state_.momentum_residual = std::max(
           state_.momentum_residual,
           observe::Observer::momentum_residual(
-              engine_.cells(), tasks != nullptr ? tasks->force_from_walls() : std::array<double, 3>{}, ranks()));
+              engine_.cells(), tasks != nullptr ? tasks->force_from_outside() : std::array<double, 3>{}, ranks()));
       if (ranks().first()) progress_.update(progress());
       state_.costs.add("observe and check", seconds_since(start), 1);
     }
@@ -296,7 +296,7 @@ class Simulation final : StepHooks {
         state_.traffic.cells.tell(snapshot);
       }
       const units::LatticeUnits& units = setting().units;
-      state_.energy.follow(snapshot, setting().is_driven(),
+      state_.energy.follow(snapshot, setting().is_driven() || solver().setup().external.any(),
                            units.to_si(solver().slight_energy(), units::dimension::energy_per_depth) /
                                (scene().domain.node_count() / scene().domain.nodes[0] / scene().domain.nodes[1]));
     }

@@ -201,15 +201,6 @@ std::vector<FluidLayer> read_layers(const SceneFields& fields, double height) {
   return layers;
 }
 
-Vector read_body_force(const SceneFields& fields, int dimension) {
-  const std::string pointer = "/fluid/body_force";
-  if (static_cast<int>(fields.count(pointer)) != dimension) {
-    fields.refuse(pointer, "the force has " + std::to_string(fields.count(pointer)) + " components, and domain.size " +
-                               std::to_string(dimension) + "\ngive it as many");
-  }
-  return fields.quantities(pointer, "N/m3", range::force_density, dimension);
-}
-
 FluidProperties read_fluid(const SceneFields& fields, const Domain& domain) {
   FluidProperties fluid;
   fluid.density = fields.quantity("/fluid/density", "kg/m3", range::density);
@@ -217,7 +208,12 @@ FluidProperties read_fluid(const SceneFields& fields, const Domain& domain) {
   fluid.layers = read_layers(fields, domain.size.y());
   fluid.inertia = fields.value_or("/fluid/inertia", false);
   fields.attempt([&] {
-    if (fields.has("/fluid/body_force")) fluid.body_force = read_body_force(fields, domain.dimension());
+    if (fields.has("/fluid/body_force"))
+      fluid.body_force = fields.vector("/fluid/body_force", "N/m3", range::force_density, domain.dimension());
+  });
+  fields.attempt([&] {
+    if (fields.has("/fluid/gravity"))
+      fluid.gravity = fields.vector("/fluid/gravity", "m/s2", range::acceleration, domain.dimension());
   });
   fluid.collision = {"trt", nlohmann::json::object(), "/fluid/collision"};
   fields.attempt([&] {
@@ -382,7 +378,7 @@ Scene read_scene(std::shared_ptr<const json::Document> document, Faults& faults)
   if (scene.domain.size.is_finite()) fields.bound_lengths(scene.domain.size);
   part([&] { scene.fluid = read_fluid(fields, scene.domain); });
   part([&] { scene.numerics = read_numerics(fields); });
-  part([&] { scene.cell_types = read_cell_types(fields, scene.fluid.viscosity, scene.domain); });
+  part([&] { scene.cell_types = read_cell_types(fields, scene.fluid, scene.domain); });
   part([&] { read_openings(fields, scene.cell_types, scene.domain); });
   part([&] { scene.cells = read_cells(fields, scene.cell_types, scene.domain, scene.packings); });
   part([&] { check_layers(fields, scene); });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -130,6 +131,7 @@ struct FluidProperties {
   std::vector<FluidLayer> layers;  ///< beside each other, from below
   bool inertia = false;            ///< false: linear (Stokes) equilibrium
   Vector body_force;               ///< N/m3, in every stage
+  Vector gravity;                  ///< m/s2, on what cells enclose: what lies around them is held
   ModelChoice collision;           ///< "trt" when the scene names none
 };
 
@@ -175,6 +177,7 @@ struct CellType {
   int segments;                       ///< of an outline; 0 in three dimensions
   double interior_viscosity;          ///< Pa s
   std::vector<ModelChoice> membrane;  ///< laws that add up
+  double interior_density = 0;        ///< kg/m3; that of the fluid where it is not written
   int triangles = 0;                  ///< of a surface: 20 n^2; 0 in two dimensions, and of a mesh, whose file has them
 
   /// Of its outline or, but of a mesh, its surface.
@@ -226,6 +229,20 @@ struct Oscillation {
   double pressure_gradient = 0;  ///< Pa/m
 };
 
+/// A force on each of some cells, in N, in two dimensions N/m.
+struct CellForce {
+  std::vector<int> cells;  ///< ascending; empty: all
+  Vector toward;         ///< unit vector: it acts on what lies furthest that way of the cell as placed; 0: on all of it
+  double share = 1;      ///< how much of the membrane that is
+  Vector force, before;  ///< in the end, and as the stage begins
+  double ramp = 0;       ///< s, from the one to the other
+  std::string pointer;
+
+  [[nodiscard]] bool pulls_at(int cell) const {
+    return cells.empty() || std::binary_search(cells.begin(), cells.end(), cell);
+  }
+};
+
 struct Stage {
   std::string name;
   std::optional<double> duration;  ///< s
@@ -237,6 +254,7 @@ struct Stage {
   Vector pressure_gradient;             ///< force per volume that drives the flow, Pa/m, along x
   std::optional<double> mean_velocity;  ///< m/s, of the fluid in a channel: the pressure gradient is what it takes
   Oscillation oscillation;
+  std::vector<CellForce> forces;
   double density_factor;                                   ///< Numerics::density_factor unless the stage has its own
   std::string density_factor_key = common_density_factor;  ///< what to change for another one
   std::string pointer;

@@ -1,4 +1,5 @@
 // Cell types and where cells are placed.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -201,10 +202,11 @@ class Placements {
 
 }  // namespace
 
-std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity, const Domain& domain) {
+std::vector<CellType> read_cell_types(const SceneFields& fields, const FluidProperties& fluid, const Domain& domain) {
   std::vector<CellType> types;
-  if (!fields.has("/cell_types") || !fields.at("/cell_types").is_object()) return types;
-  for (const auto& [name, written] : fields.at("/cell_types").items()) {
+  if (fields.has("/cell_types") && !fields.at("/cell_types").is_object()) return types;
+  const auto written_types = fields.has("/cell_types") ? fields.at("/cell_types") : nlohmann::json::object();
+  for (const auto& [name, written] : written_types.items()) {
     const auto pointer = json::child_pointer("/cell_types", name);
     fields.attempt([&, &name = name] {
       if (!is_plain_name(name)) {
@@ -246,7 +248,8 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_vi
       type.segments = fields.value<int>(pointer + "/segments");
     });
     type.interior_viscosity =
-        fields.quantity_or(pointer + "/interior_viscosity", "Pa s", range::viscosity, fluid_viscosity);
+        fields.quantity_or(pointer + "/interior_viscosity", "Pa s", range::viscosity, fluid.viscosity);
+    type.interior_density = fields.quantity_or(pointer + "/interior_density", "kg/m3", range::density, fluid.density);
     fields.attempt([&] {
       require("membrane");
       const std::size_t laws = fields.count(pointer + "/membrane");
@@ -255,6 +258,12 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_vi
       }
     });
   }
+  const bool sink = std::any_of(types.begin(), types.end(),
+                                [&](const CellType& type) { return type.interior_density != fluid.density; });
+  if (fluid.gravity != Vector() && !sink && fields.settled("/cell_types"))
+    fields.refuse_key("/fluid/gravity",
+                      "gravity acts on cells of another density than the fluid's, and there are none\n"
+                      "give a cell type \"interior_density\"; a force on the fluid itself is body_force");
   return types;
 }
 

@@ -105,6 +105,14 @@ Vector SceneFields::quantities(const std::string& pointer, std::string_view unit
   return read;
 }
 
+Vector SceneFields::vector(const std::string& pointer, std::string_view unit, AllowedRange range, int dimension) const {
+  if (static_cast<int>(count(pointer)) != dimension) {
+    refuse(pointer, json::subject(pointer) + " has " + std::to_string(count(pointer)) +
+                        " components, and domain.size " + std::to_string(dimension) + "\ngive it as many");
+  }
+  return quantities(pointer, unit, range, dimension);
+}
+
 Vector SceneFields::place(const std::string& pointer, const Domain& domain, const char* what) const {
   const Vector read = quantities(pointer, "m", range::place, domain.dimension());
   const int lengths = static_cast<int>(count(pointer));

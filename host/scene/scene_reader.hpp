@@ -39,6 +39,9 @@ inline constexpr AllowedRange rate{1e-12, 1e9, 1e-12, 1e7, "1/s"};              
 inline constexpr AllowedRange velocity{-1e6, 1e6, -0.5, 0.5, "mm/s"};               ///< m/s
 inline constexpr AllowedRange pressure{-1e9, 1e9, -1e6, 1e6, "Pa"};                 ///< Pa
 inline constexpr AllowedRange force_density{-1e15, 1e15, -1e12, 1e12, "N/m3"};      ///< N/m3
+inline constexpr AllowedRange acceleration{-1e9, 1e9, -1e6, 1e6, "m/s2"};           ///< m/s2
+inline constexpr AllowedRange force{-1.0, 1.0, -1e-3, 1e-3, "pN"};                  ///< N; N/m in two dimensions
+inline constexpr AllowedRange component{-1e9, 1e9};                                 ///< of a direction
 inline constexpr AllowedRange frequency{1e-9, 1e9, 1e-6, 1e6, "Hz"};                ///< Hz
 inline constexpr AllowedRange angle{-1e3, 1e3, -7.0, 7.0, "deg"};                   ///< rad; 7: just above a turn
 }  // namespace range
@@ -89,6 +92,9 @@ class SceneFields {
   /// As many of them as the array has, but no more than `dimension`; along other axes 0.
   [[nodiscard]] Vector quantities(const std::string& pointer, std::string_view unit, AllowedRange range,
                                   int dimension) const;
+  /// The same of something that has one along each axis of the domain; refused where it has not.
+  [[nodiscard]] Vector vector(const std::string& pointer, std::string_view unit, AllowedRange range,
+                              int dimension) const;
   /// A place in the domain; refused where it has not a length along each axis. `what` is called so: "place".
   [[nodiscard]] Vector place(const std::string& pointer, const Domain& domain, const char* what = "place") const;
 
@@ -165,7 +171,7 @@ void read_wall_shapes(const SceneFields& fields, Domain& domain);
 void read_openings(const SceneFields& fields, const std::vector<CellType>& types, Domain& domain);
 /// Refuses what there is no way to have between openings.
 void check_openings(const SceneFields& fields, const Scene& scene);
-std::vector<CellType> read_cell_types(const SceneFields& fields, double fluid_viscosity, const Domain& domain);
+std::vector<CellType> read_cell_types(const SceneFields& fields, const FluidProperties& fluid, const Domain& domain);
 /// Triangles with which the nodes of a surface lie about so far apart, m: 20 n^2. Not of a mesh, whose file has them.
 int triangles_about(const Shape& shape, double spacing);
 /// Cells as placed by hand. What is wanted at random goes into `packings`.

@@ -162,6 +162,50 @@ Oscillation read_oscillation(const SceneFields& fields, const std::string& stage
   return oscillation;
 }
 
+/// `former`: that of the stage before at the same place of its list, or null.
+CellForce read_force(const SceneFields& fields, const std::string& pointer, const Stage& stage, int dimension,
+                     const CellForce* former) {
+  CellForce force;
+  force.pointer = pointer;
+  const std::string toward = pointer + "/patch/toward", ramp = pointer + "/ramp";
+  force.cells = fields.value_or(pointer + "/cells", std::vector<int>{});
+  std::sort(force.cells.begin(), force.cells.end());
+  force.share = fields.value_or(pointer + "/patch/share", 1.0);
+  force.force = fields.vector(pointer + "/force", std::array{"N/m", "N"}[dimension - 2], range::force, dimension);
+  if (fields.has(toward)) {
+    force.toward = fields.vector(toward, "1", range::component, dimension);
+    if (!(force.toward.norm() > 0)) fields.refuse(toward, "this has no direction\ngive numbers that are not all 0");
+    force.toward *= 1 / force.toward.norm();
+  }
+  const bool same = former != nullptr && former->cells == force.cells && former->toward == force.toward &&
+                    former->share == force.share;
+  force.before = same ? former->force : Vector::filled(dimension, 0);
+  if (!fields.has(ramp)) return force;
+  force.ramp = fields.quantity(ramp, "s", range::time);
+  const double strained = stage.strain ? *stage.strain / std::abs(stage.shear_rate) : INFINITY;
+  if (stage.until_at_rest || stage.until_equilibrium ||
+      force.ramp > std::min(stage.duration.value_or(INFINITY), strained) * (1 + 1e-9))
+    fields.refuse(
+        ramp,
+        "this stage may end before the force has come to its value\ngive a shorter ramp, or let another stage "
+        "follow that has the same force");
+  return force;
+}
+
+void read_forces(const SceneFields& fields, Stage& stage, const Scene& scene, const Stage* former) {
+  const std::string pointer = stage.pointer + "/forces";
+  const std::size_t count = fields.has(pointer) ? fields.count(pointer) : 0;
+  if (count > 0 && scene.cells.empty() && scene.packings.empty() && !scene.domain.is_open() && fields.settled("/cells"))
+    fields.refuse_key(pointer, "there are no cells that a force could pull at\nadd cells, or leave this out");
+  for (std::size_t i = 0; i < count; ++i) {
+    const CellForce* const before = former != nullptr && i < former->forces.size() ? &former->forces[i] : nullptr;
+    fields.attempt([&] {
+      stage.forces.push_back(
+          read_force(fields, json::child_pointer(pointer, i), stage, scene.domain.dimension(), before));
+    });
+  }
+}
+
 Stage read_stage(const SceneFields& fields, const std::string& pointer, const Scene& scene) {
   Stage stage;
   stage.pointer = pointer;
@@ -259,6 +303,7 @@ std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene) {
     const bool again =
         std::any_of(stages.begin(), stages.end(), [&](const Stage& earlier) { return earlier.name == stage.name; });
     stages.push_back(stage);
+    fields.attempt([&] { read_forces(fields, stages.back(), scene, i > 0 ? &stages[i - 1] : nullptr); });
     fields.attempt([&] {
       if (!again || stage.name.empty()) return;
       fields.refuse(stage.pointer + "/name",

@@ -42,6 +42,8 @@ inline constexpr Dimension density{{1, -3, 0, 0, 0, 0}};
 inline constexpr Dimension viscosity{{1, -1, -1, 0, 0, 0}};
 inline constexpr Dimension pressure{{1, -1, -2, 0, 0, 0}};
 inline constexpr Dimension force_density{{1, -2, -2, 0, 0, 0}};
+/// Of a force in so many dimensions: in two that of one per depth.
+inline constexpr Dimension force(int dimensions) { return {{1, dimensions - 2, -2, 0, 0, 0}}; }
 inline constexpr Dimension tension{{1, 0, -2, 0, 0, 0}};
 inline constexpr Dimension energy_per_depth{{1, 1, -2, 0, 0, 0}};
 inline constexpr Dimension power_per_depth{{1, 1, -3, 0, 0, 0}};

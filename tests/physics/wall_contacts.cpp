@@ -214,7 +214,7 @@ TEST_CASE("the walls' shear stress is that of the flow and of the cell's particl
     const double walls = (wall.lower - wall.upper) / 2 / stress - 1;
     const double particle = particle_stress(bench.membranes, bench.scene, viscosity_of(stage.tau)) / stress;
     const double residual =
-        Observer::momentum_residual(bench.membranes, bench.solver->cell_tasks()->force_from_walls());
+        Observer::momentum_residual(bench.membranes, bench.solver->cell_tasks()->force_from_outside());
     const double without = Observer::momentum_residual(bench.membranes);
     bench.solver->advance();
     std::cout << "sheared ring, held: gap " << gap_of(bench) << " spacings, viscosity - 1 by the walls " << walls

@@ -11,6 +11,7 @@
 #include "core/fluid/walls.hpp"
 #include "core/membrane/displacement_watch.hpp"
 #include "core/membrane/membrane_energy.hpp"
+#include "external_forces.hpp"
 #include "surroundings.hpp"
 
 namespace rouleau::core {
@@ -59,8 +60,9 @@ class AnyCellTasks {
   [[nodiscard]] virtual std::vector<InteractionEnergy> interaction_energies() const = 0;
   /// Of each segment, or triangle, of a cell of this rank's, all laws together.
   [[nodiscard]] virtual std::vector<double> tensions(int cell) = 0;
-  /// What walls do to all cells.
-  [[nodiscard]] virtual std::array<double, 3> force_from_walls() const = 0;
+  /// What walls and the setup's external forces do to all cells; and of the latter alone their sum and power.
+  [[nodiscard]] virtual std::array<double, 3> force_from_outside() const = 0;
+  [[nodiscard]] virtual ExternalForces<D>::Sums external_sums() const = 0;
   /// Of a cell: InteractionForces::force_across_images.
   [[nodiscard]] virtual double force_across_images(int cell) const = 0;
 

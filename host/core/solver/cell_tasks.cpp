@@ -67,7 +67,8 @@ void CellTasks<T, D>::run(Task task, Worker worker) {
     case Task::find_contacts:
       return interactions_->run(worker, 0, cells_);
     case Task::membrane_forces:
-      return forces_.run(worker, cells_);
+      forces_.run(worker, cells_);
+      return setup_.external.run(worker, cells_);
     case Task::wall_forces:
       return wall_contacts_->run(worker, cells_);
     case Task::interaction_forces:

@@ -21,7 +21,8 @@ Schedule make_schedule(const StepFeatures& has) {
   const Meeting own_cells = ghosts ? Meeting::all : touch ? Meeting::await : Meeting::none;
 
   // The last step has left the lattice to itself; with cells a later meeting tells all workers before they take rows.
-  add(has.changing_drive, Task::set_drive, "fluid", cells ? Meeting::none : Meeting::all);
+  add(has.changing_drive || has.changing_forces, Task::set_drive, "fluid",
+      cells && !has.changing_forces ? Meeting::none : Meeting::all);
   add(touch && !ghosts, Task::find_contacts, "interaction", Meeting::announce);
   add(cells, Task::membrane_forces, "membrane", walls ? Meeting::none : own_cells);
   add(walls, Task::wall_forces, "interaction", own_cells);

@@ -10,7 +10,7 @@ namespace rouleau::core {
 
 /// What a time step may do. A pass over cells gives each worker cells, one over rows gives it rows of the lattice.
 enum class Task {
-  set_drive,           ///< one worker: walls and body force that change with time
+  set_drive,           ///< one worker: walls, body force and forces on cells that change with time
   membrane_forces,     ///< cells: F = -dE/dX of the membrane laws
   wall_forces,         ///< cells: F = -dE/dX of the potentials between cells and walls
   receive_positions,   ///< one worker: of other ranks' nodes that this one has to know of
@@ -64,6 +64,8 @@ struct StepFeatures {
   bool moving_frame = false;
   /// What drives the fluid changes with time.
   bool changing_drive = false;
+  /// What acts on cells from outside does.
+  bool changing_forces = false;
   /// Other ranks hold other blocks and own other cells.
   bool ranks = false;
 };

@@ -146,6 +146,7 @@ void Solver<T, Set>::make_passes() {
   StepFeatures features{.viscosity_contrast = fluid_.setting().viscosity_contrast,
                         .moving_frame = setup_.follow_cells,
                         .changing_drive = setup_.oscillation.any() || flow_control_.has_value(),
+                        .changing_forces = cell_tasks_ != nullptr && setup_.external.any(),
                         .ranks = ranks};
   if (cell_tasks_) cell_tasks_->describe(features);
   const Schedule schedule = make_schedule(features);
@@ -170,6 +171,7 @@ void Solver<T, Set>::run(Task task, Worker worker) {
     case Task::set_drive:
       if (!worker.first()) return;
       oscillate(steps_);
+      setup_.external.steps = steps_;
       if (flow_control_ && flow_control_->due(steps_)) this->end_messages(), keep_mean_velocity();
       return;
     case Task::end_step:

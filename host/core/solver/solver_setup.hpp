@@ -16,6 +16,7 @@
 #include "core/fluid/walls.hpp"
 #include "core/membrane/membrane_forces.hpp"
 #include "core/model/model.hpp"
+#include "external_forces.hpp"
 
 namespace rouleau::core {
 
@@ -74,6 +75,8 @@ struct BasicSolverSetup {
   /// Only between walls.
   std::vector<WallInteraction> wall_interactions = {};
   std::vector<SelfInteraction> self_interactions = {};
+  /// On cells, from outside.
+  ExternalForces<D> external = {};
   /// The step of stiff membranes (SemiImplicitFilter, SurfaceFilter).
   bool semi_implicit = false;
   /// Takes the tangential slip of the immersed boundary out.
