@@ -209,13 +209,15 @@ void describe_surface(const CellMeasures& measures, const units::LatticeUnits& u
 }
 
 void measure_pulled(const scene::Scene& scene, const core::CellNodes& nodes, CellMeasures& measures) {
-  const scene::CellForce* first = nullptr;
+  scene::Vector along = scene.fluid.gravity;
+  bool pulled = false;
   for (const scene::Stage& stage : scene.stages) {
     for (const scene::CellForce& force : stage.forces)
-      if (first == nullptr && force.pulls_at(measures.cell) && force.force != scene::Vector()) first = &force;
+      if (!pulled && force.pulls_at(measures.cell) && force.force != scene::Vector())
+        along = force.force, pulled = true;
   }
-  if (first == nullptr) return;
-  const scene::Vector along = 1 / first->force.norm() * first->force;
+  if (along == scene::Vector()) return;
+  along *= 1 / along.norm();
   const double in_plane = std::hypot(along.x(), along.y());
   const scene::Vector across = in_plane > 0 ? 1 / in_plane * scene::Vector(-along.y(), along.x()) : scene::Vector(1, 0);
   const core::CellRange& range = nodes.cells[measures.cell];

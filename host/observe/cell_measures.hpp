@@ -37,7 +37,7 @@ struct CellMeasures {
   double length_along_force = std::numeric_limits<double>::quiet_NaN(), width_across_force = length_along_force;
 };
 
-/// Adds its extents along and across the first force in the scene's stages that pulls at the cell, if one does.
+/// Adds its extents along and across the first force in the scene's stages that pulls at the cell, or gravity.
 void measure_pulled(const scene::Scene& scene, const core::CellNodes& nodes, CellMeasures& measures);
 
 /// `region`: of the fluid (scene::fluid_region); null: planes alone close the domain. `marker`: the node that is

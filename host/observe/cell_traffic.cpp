@@ -66,8 +66,8 @@ bool has_traffic(const scene::Scene& scene) { return scene.domain.openings && !s
 RunKind kind_of(const scene::Scene& scene) {
   const bool pulled = std::any_of(scene.stages.begin(), scene.stages.end(),
                                   [](const scene::Stage& stage) { return !stage.forces.empty(); });
-  return {scene.domain.dimension(), scene.domain.is_open(), has_traffic(scene), pulled,
-          scene.fluid.gravity != scene::Vector()};
+  return {scene.domain.dimension(), scene.domain.is_open(), has_traffic(scene),
+          pulled || scene.fluid.gravity != scene::Vector()};
 }
 
 void CellTraffic::begin_stage(const std::string& name, double time) {

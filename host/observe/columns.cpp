@@ -250,7 +250,7 @@ constexpr Observable series_columns[] = {
      .value = energy<&EnergySnapshot::external_power>,
      .chart = "Power",
      .line = "from forces on cells",
-     .of_external = true},
+     .of_forces = true},
 };
 
 constexpr Observable size_columns[] = {
@@ -306,11 +306,12 @@ std::vector<Observable> columns_of_cells() {
       "of the centroid from the axis of a tube or duct, or the plane amid two walls (slipper); `nan` elsewhere",
       cell<&CellSnapshot::offset_from_axis>);
   const auto along_force = [&](auto name, auto doc, Value (*value)(const Row&), auto chart) {
-    all.push_back({.name = name, .unit = "m", .doc = doc, .value = value, .chart = chart, .of_pulled = true});
+    all.push_back({.name = name, .unit = "m", .doc = doc, .value = value, .chart = chart, .of_forces = true});
   };
-  along_force("length_along_force",
-              "extent of the membrane's nodes along the first force in the stages that pulls at the cell, or `nan`",
-              cell<&CellSnapshot::length_along_force>, "Length along the force");
+  along_force(
+      "length_along_force",
+      "extent of the membrane's nodes along the first force of the stages that pulls at the cell, or along gravity",
+      cell<&CellSnapshot::length_along_force>, "Length along the force");
   along_force("width_across_force",
               "their extent at right angles to it in the plane of x and y; along x where it acts along z",
               cell<&CellSnapshot::width_across_force>, "Width across the force");

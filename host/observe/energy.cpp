@@ -81,7 +81,7 @@ EnergySnapshot observe_energy(core::AnySolver<D>& solver, const core::Energetics
     energy.elastic = (membrane.tension + membrane.cell) * joule;
     energy.bending = membrane.bending * joule;
     energy.membrane_dissipation = membrane.dissipation * watt;
-    if (solver.setup().external.any()) energy.external_power = tasks->external_sums().power * watt;
+    if (solver.setup().external.any()) energy.external_power = tasks->external_sums()[3] * watt;
     energy.total += energy.elastic + energy.bending;
     // What corrected nodes give away and neither the lattice nor a wall gets is lost in the layers beside the
     // membranes, which the lattice does not resolve and the correction stands for.

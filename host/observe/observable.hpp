@@ -34,13 +34,12 @@ using Value = std::variant<std::monostate, double, long, bool, std::string>;
 /// What a run has that some columns are for.
 struct RunKind {
   // NOLINTNEXTLINE(google-explicit-constructor): a number of dimensions says it of most
-  RunKind(int dimensions, bool openings = false, bool cells_pass = false, bool forces = false, bool weights = false)
-      : dimension(dimensions), open(openings), traffic(cells_pass), pulled(forces), external(forces || weights) {}
+  RunKind(int dimensions, bool openings = false, bool cells_pass = false, bool external_forces = false)
+      : dimension(dimensions), open(openings), traffic(cells_pass), forces(external_forces) {}
   int dimension;
-  bool open;      ///< fluid goes through openings
-  bool traffic;   ///< cells may come or leave
-  bool pulled;    ///< a stage has forces on cells
-  bool external;  ///< or gravity acts on them
+  bool open;     ///< fluid goes through openings
+  bool traffic;  ///< cells may come or leave
+  bool forces;   ///< those of stages, or gravity, act on cells
 };
 
 struct Observable {
@@ -55,12 +54,11 @@ struct Observable {
   bool in_plane = false;        ///< there in two dimensions only
   bool at_openings = false;     ///< there only where fluid goes through openings
   bool of_traffic = false;      ///< there where cells may come or leave (has_traffic)
-  bool of_pulled = false;       ///< there where a stage has forces on cells
-  bool of_external = false;     ///< there where it has, or gravity acts on cells
+  bool of_forces = false;       ///< there where stages have forces on cells, or gravity acts
 
   [[nodiscard]] bool is_in(const RunKind& run) const {
     return !(run.dimension == 3 ? in_plane : in_space) && (run.open || !at_openings) && (run.traffic || !of_traffic) &&
-           (run.pulled || !of_pulled) && (run.external || !of_external);
+           (run.forces || !of_forces);
   }
   /// The column's name: the name and the unit, "kinetic_energy_J_per_m".
   [[nodiscard]] std::string column() const;

@@ -83,8 +83,7 @@ nlohmann::json columns_json() {
                          {"in_plane", o.in_plane},
                          {"at_openings", o.at_openings},
                          {"of_traffic", o.of_traffic},
-                         {"of_pulled", o.of_pulled},
-                         {"of_external", o.of_external}});
+                         {"of_forces", o.of_forces}});
     list.push_back({{"name", table.name}, {"columns", std::move(columns)}});
   }
   return list;

@@ -25,7 +25,7 @@ struct CellSnapshot {
   int aggregate;       ///< label: smallest index of a cell of the aggregate it belongs to
   bool through_image;  ///< its aggregate is held together by a contact across the periodic boundary
   double stretch_min, stretch_max;  ///< of its segments or edges: length over rest length
-  double length_along_force = std::numeric_limits<double>::quiet_NaN();  ///< m; NaN: no force pulls at the cell
+  double length_along_force = std::numeric_limits<double>::quiet_NaN();  ///< m; NaN: none acts on the cell
   double width_across_force = length_along_force;                        ///< m, likewise
   // Of a surface, angle and deformation of which are those of the plane of x and y; 0 of an outline.
   double z = 0;                        ///< centroid, m

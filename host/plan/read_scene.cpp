@@ -121,20 +121,20 @@ void complete_feed(scene::Scene& scene) {
 
 /// What forces pull at, once all cells are known: a patch is known of those that are placed.
 void check_forced_cells(const scene::Scene& scene) {
-  const auto refuse = [&](const std::string& pointer, const std::string& problem, const char* remedy) {
-    throw Error(Cause::bad_input, scene.place(pointer), problem, {remedy});
-  };
   for (const scene::Stage& stage : scene.stages) {
     for (const scene::CellForce& force : stage.forces) {
-      const auto last = force.cells.empty() ? scene.cells.size() - 1 : static_cast<std::size_t>(force.cells.back());
-      if (last >= scene.cells.size())
-        refuse(force.pointer + "/cells",
-               "there is no cell " + std::to_string(last) + "; the scene has " + std::to_string(scene.cells.size()) +
-                   ", numbered from 0",
-               "take smaller numbers, or leave cells out for all of them");
+      const std::size_t count = scene.cells.size();
+      const auto last =
+          force.cells.empty() ? std::max(count, std::size_t{1}) - 1 : static_cast<std::size_t>(force.cells.back());
+      if (last >= count)
+        throw Error(Cause::bad_input, scene.place(force.pointer),
+                    "there is no cell " + std::to_string(last) + " that it could pull at; the scene has " +
+                        std::to_string(count) + ", numbered from 0",
+                    {"name others, or leave the force out"});
       if (last >= scene.placed().size() && force.toward != scene::Vector())
-        refuse(force.pointer + "/patch", "patches are of cells as placed, and some of these come in through the inlet",
-               "leave patch out, or name cells that are placed");
+        throw Error(Cause::bad_input, scene.place(force.pointer + "/patch"),
+                    "patches are of cells as placed, and some of these come in through the inlet",
+                    {"leave patch out, or name cells that are placed"});
     }
   }
 }

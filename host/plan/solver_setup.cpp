@@ -12,6 +12,8 @@
 #include "core/geometry/parts.hpp"
 #include "placed_cells.hpp"
 #include "scene/driving_flow.hpp"
+#include "shape/extent.hpp"
+#include "shape/surface.hpp"
 #include "shape/walls.hpp"
 
 namespace rouleau::plan {
@@ -68,33 +70,25 @@ core::ForcePatch make_patch(const std::vector<double>& along, const std::vector<
   return patch;
 }
 
-template <int D>
-core::Cells<D> placed_alone(const core::Cells<D>& types, scene::CellPlacement cell, double spacing) {
-  core::Cells<D> one;
-  one.types = types.types;
-  cell.center = scene::Vector::filled(D, 0);
-  add_placed(one, cell, spacing);
-  return one;
-}
-
 /// Of each cell, where a force acts on it; cells that are placed alike share it.
 template <int D>
 std::vector<std::shared_ptr<const core::ForcePatch>> patches(const scene::Scene& scene, const scene::CellForce& force,
                                                              const core::Cells<D>& types) {
   std::vector<std::shared_ptr<const core::ForcePatch>> of_cell(scene.cells.size());
-  std::map<std::array<double, 5>, std::shared_ptr<const core::ForcePatch>> alike;
+  std::map<std::array<double, 4>, std::shared_ptr<const core::ForcePatch>> alike;
   for (std::size_t c = 0; c < of_cell.size(); ++c) {
     if (!force.pulls_at(static_cast<int>(c))) continue;
     const scene::CellPlacement& cell = scene.cells[c];
-    const Eigen::Vector3d axis = cell.axis.value_or(Eigen::Vector3d::Zero());
-    auto& patch = alike[{static_cast<double>(cell.type), cell.angle, axis.x(), axis.y(), axis.z()}];
+    const auto& rest = *types.types[cell.type];
+    const Eigen::Vector3d to = shape::rotation_of(cell).transpose() * force.toward.in<3>();  // as the shape is given
+    auto& patch = alike[{static_cast<double>(cell.type), to.x(), to.y(), to.z()}];
     if (!patch) {
-      const core::Cells<D> one = placed_alone<D>(types, cell, scene::lattice_spacing(scene));
       std::vector<double> along;
-      for (int i = 0; i < one.node_count(); ++i)
-        along.push_back(force.toward.template in<D>().dot(core::vector_at<D>(one.position, i)));
-      patch = std::make_shared<const core::ForcePatch>(
-          make_patch(along, types.types[cell.type]->node_measure(), force.share));
+      for (std::size_t i = 0; i < rest.x.size(); ++i) {
+        along.push_back(to.x() * rest.x[i] + to.y() * rest.y[i]);
+        if constexpr (requires { rest.z; }) along.back() += to.z() * rest.z[i];
+      }
+      patch = std::make_shared<const core::ForcePatch>(make_patch(along, rest.node_measure(), force.share));
     }
     of_cell[c] = patch;
   }
@@ -105,25 +99,29 @@ std::vector<std::shared_ptr<const core::ForcePatch>> patches(const scene::Scene&
 template <int D>
 void add_external_forces(const scene::Scene& scene, const scene::StageSetting& stage,
                          core::BasicSolverSetup<D>& setup) {
-  const scene::Vector& gravity = scene.fluid.gravity;
-  if (stage.stage->forces.empty() && gravity == scene::Vector()) return;
-  const core::Cells<D> types = without_cells<D>(scene, stage.units.length);
   const double force = stage.units.unit(units::dimension::force(D));
-  for (const scene::CellForce& pull : stage.stage->forces)
-    setup.external.pulls.push_back({.before = pull.before.template in<D>() / force,
-                                    .after = pull.force.template in<D>() / force,
-                                    .ramp_steps = pull.ramp / stage.units.time,
-                                    .patch = patches<D>(scene, pull, types)});
-  if (gravity == scene::Vector()) return;
-  for (const scene::CellType& type : scene.cell_types)
-    setup.external.weight.emplace_back((type.interior_density - scene.fluid.density) /
-                                       stage.units.unit(units::dimension::force_density) * gravity.template in<D>());
+  if (!stage.stage->forces.empty()) {
+    const core::Cells<D> types = without_cells<D>(scene, stage.units.length);
+    for (const scene::CellForce& pull : stage.stage->forces)
+      setup.external.pulls.push_back({.before = pull.before.template in<D>() / force,
+                                      .after = pull.force.template in<D>() / force,
+                                      .ramp_steps = pull.ramp / stage.units.time,
+                                      .patch = patches<D>(scene, pull, types)});
+  }
+  const core::Vec<D> gravity = scene.fluid.gravity.template in<D>() / stage.units.unit(units::dimension::force_density);
+  if (gravity.isZero(0)) return;
+  double excess = 0;  // mass, kg, in two dimensions per depth
+  for (const scene::CellType& type : scene.cell_types) {
+    const double denser = type.interior_density - scene.fluid.density;
+    const auto t = static_cast<int>(setup.external.weight.size());
+    setup.external.weight.emplace_back(denser * gravity);
+    excess += denser * shape::enclosed_by(type) *
+              static_cast<double>(std::count_if(scene.cells.begin(), scene.cells.end(),
+                                                [t](const scene::CellPlacement& cell) { return cell.type == t; }));
+  }
   if (scene::has_walls(scene.domain) || scene.domain.is_open()) return;
-  core::Vec<D> held = core::Vec<D>::Zero();
-  for (const scene::CellPlacement& cell : scene.cells)
-    held += core::rest_content(placed_alone<D>(types, cell, 1), 0) * setup.external.weight[cell.type];
   double* const body_force[] = {&setup.body_force_x, &setup.body_force_y, &setup.body_force_z};
-  for (int k = 0; k < D; ++k) *body_force[k] -= held[k] / scene.domain.node_count();
+  for (int k = 0; k < D; ++k) *body_force[k] -= excess / scene.domain.size.product() * gravity[k];
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ Json charts(const files::StoredTable* cells, const files::StoredTable& series) {
   Json list = Json::array();
   for (const char* table : {"cells", "series"}) {
     for (const observe::Observable& observable : observe::table(table).observables) {
-      const bool in_some = observable.of_traffic || observable.of_pulled || observable.of_external;
+      const bool in_some = observable.of_traffic || observable.of_forces;
       const auto there = [&](const auto* one) { return one != nullptr && one->has(observable.column()); };
       if (observable.chart.empty() || (in_some && !there(cells) && !there(&series))) continue;
       const Shown as = shown(observable);

@@ -192,17 +192,13 @@ CellForce read_force(const SceneFields& fields, const std::string& pointer, cons
   return force;
 }
 
-void read_forces(const SceneFields& fields, Stage& stage, const Scene& scene, const Stage* former) {
+void read_forces(const SceneFields& fields, Stage& stage, int dimension, const Stage* former) {
   const std::string pointer = stage.pointer + "/forces";
   const std::size_t count = fields.has(pointer) ? fields.count(pointer) : 0;
-  if (count > 0 && scene.cells.empty() && scene.packings.empty() && !scene.domain.is_open() && fields.settled("/cells"))
-    fields.refuse_key(pointer, "there are no cells that a force could pull at\nadd cells, or leave this out");
   for (std::size_t i = 0; i < count; ++i) {
     const CellForce* const before = former != nullptr && i < former->forces.size() ? &former->forces[i] : nullptr;
-    fields.attempt([&] {
-      stage.forces.push_back(
-          read_force(fields, json::child_pointer(pointer, i), stage, scene.domain.dimension(), before));
-    });
+    fields.attempt(
+        [&] { stage.forces.push_back(read_force(fields, json::child_pointer(pointer, i), stage, dimension, before)); });
   }
 }
 
@@ -303,7 +299,8 @@ std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene) {
     const bool again =
         std::any_of(stages.begin(), stages.end(), [&](const Stage& earlier) { return earlier.name == stage.name; });
     stages.push_back(stage);
-    fields.attempt([&] { read_forces(fields, stages.back(), scene, i > 0 ? &stages[i - 1] : nullptr); });
+    fields.attempt(
+        [&] { read_forces(fields, stages.back(), scene.domain.dimension(), i > 0 ? &stages[i - 1] : nullptr); });
     fields.attempt([&] {
       if (!again || stage.name.empty()) return;
       fields.refuse(stage.pointer + "/name",

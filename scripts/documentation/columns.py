@@ -12,8 +12,7 @@ def lines(columns):
         space = "in three dimensions: " if column["in_space"] else "in two dimensions: " if column["in_plane"] else ""
         space += "between openings: " if column["at_openings"] else ""
         space += "where cells may come or leave: " if column["of_traffic"] else ""
-        space += "where forces act on cells: " if column["of_pulled"] else ""
-        space += "where forces or gravity act on cells: " if column["of_external"] else ""
+        space += "where forces or gravity act on cells: " if column["of_forces"] else ""
         yield f"| `{column['column']}` | {space}{column['doc']}{means} |"
 
 

@@ -62,7 +62,7 @@ class AnyCellTasks {
   [[nodiscard]] virtual std::vector<double> tensions(int cell) = 0;
   /// What walls and the setup's external forces do to all cells; and of the latter alone their sum and power.
   [[nodiscard]] virtual std::array<double, 3> force_from_outside() const = 0;
-  [[nodiscard]] virtual ExternalForces<D>::Sums external_sums() const = 0;
+  [[nodiscard]] virtual std::array<double, 4> external_sums() const = 0;
   /// Of a cell: InteractionForces::force_across_images.
   [[nodiscard]] virtual double force_across_images(int cell) const = 0;
 

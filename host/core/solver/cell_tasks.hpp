@@ -82,13 +82,14 @@ class CellTasks final : public AnyCellTasks<D> {
   [[nodiscard]] bool corrects_motion() const override { return slip_ || setup_.area_correction; }
   [[nodiscard]] const DisplacementWatch::Memory& viscosity_memory() const override { return viscosity_field_.memory(); }
   [[nodiscard]] std::array<double, 3> force_from_outside() const override {
-    std::array<double, 3> force = external_sums().force;
+    const auto [x, y, z, power] = external_sums();
+    std::array<double, 3> force{x, y, z};
     for (int k = setup_.region ? 0 : 1; k < D && wall_contacts_; ++k)  // planes lie along x
       force[static_cast<std::size_t>(k)] += wall_contacts_->net_force(cells_, ranks_, k);
     return force;
   }
-  [[nodiscard]] ExternalForces<D>::Sums external_sums() const override {
-    return setup_.external.any() ? setup_.external.sums(cells_, ranks_) : typename ExternalForces<D>::Sums{};
+  [[nodiscard]] std::array<double, 4> external_sums() const override {
+    return setup_.external.any() ? setup_.external.sums(cells_, ranks_) : std::array<double, 4>{};
   }
   [[nodiscard]] double force_across_images(int cell) const override {
     return interactions_ ? interactions_->force_across_images(cell) : 0;

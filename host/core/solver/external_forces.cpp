@@ -16,12 +16,13 @@ void for_facets(const Membranes& membranes, int cell, Visit visit) {
 }
 template <class Visit>
 void for_facets(const Surfaces& surfaces, int cell, Visit visit) {
-  const Nodes nodes = surfaces.nodes(cell);
-  for (const auto& corners : surfaces.type_of(cell).mesh.triangles()) {
-    const Vec<3> a = nodes[corners[0]];
-    visit(corners, Vec<3>(0.5 * (nodes[corners[1]] - a).cross(nodes[corners[2]] - a)));
-  }
+  const Mesh& mesh = surfaces.type_of(cell).mesh;
+  const std::vector<Vec<3>> twice = area_vectors(mesh, surfaces.nodes(cell));
+  for (std::size_t t = 0; t < twice.size(); ++t) visit(mesh.triangles()[t], Vec<3>(0.5 * twice[t]));
 }
+
+double rest_content(const Membranes& membranes, int cell) { return membranes.cells[cell].rest_area; }
+double rest_content(const Surfaces& surfaces, int cell) { return surfaces.type_of(cell).rest_volume; }
 
 /// A pressure on the membrane that grows along the weight: minus the exact gradient of the polyhedron's energy, so that
 /// its sum is the weight (docs: physics, forces on cells). The content weighs what it did at rest. The pressure is 0 at
@@ -70,7 +71,7 @@ void ExternalForces<D>::run(Worker worker, Cells<D>& cells) const {
 }
 
 template <int D>
-auto ExternalForces<D>::sums(const Cells<D>& cells, const Ranks<D>& ranks) const -> Sums {
+std::array<double, 4> ExternalForces<D>::sums(const Cells<D>& cells, const Ranks<D>& ranks) const {
   std::vector<ExactSum> sums(4);
   NodeArrays force;
   for (const int cell : cells.own_cells()) {
@@ -85,7 +86,7 @@ auto ExternalForces<D>::sums(const Cells<D>& cells, const Ranks<D>& ranks) const
     }
   }
   add_up(ranks, sums);
-  return {.force = {sums[0].value(), sums[1].value(), sums[2].value()}, .power = sums[3].value()};
+  return {sums[0].value(), sums[1].value(), sums[2].value(), sums[3].value()};
 }
 
 template struct ExternalForces<2>;

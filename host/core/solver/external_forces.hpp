@@ -34,19 +34,11 @@ struct ExternalForces {
   [[nodiscard]] bool any() const { return !pulls.empty() || !weight.empty(); }
   /// Pass over cells: adds them to the forces on the nodes.
   void run(Worker worker, Cells<D>& cells) const;
-  /// Over all ranks' cells: the force, and the power at the velocities of the last step.
-  struct Sums {
-    std::array<double, 3> force{};
-    double power = 0;
-  };
-  [[nodiscard]] Sums sums(const Cells<D>& cells, const Ranks<D>& ranks) const;
+  /// Over all ranks' cells: the force along x, y and z, and the power at the velocities of the last step.
+  [[nodiscard]] std::array<double, 4> sums(const Cells<D>& cells, const Ranks<D>& ranks) const;
 
  private:
   void add(const Cells<D>& cells, int cell, std::array<double*, D> force) const;
 };
-
-/// Area or volume that a cell encloses at rest.
-inline double rest_content(const Membranes& membranes, int cell) { return membranes.cells[cell].rest_area; }
-inline double rest_content(const Surfaces& surfaces, int cell) { return surfaces.type_of(cell).rest_volume; }
 
 }  // namespace rouleau::core
