@@ -258,12 +258,14 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, const FluidProp
       }
     });
   }
-  const bool sink = std::any_of(types.begin(), types.end(),
-                                [&](const CellType& type) { return type.interior_density != fluid.density; });
-  if (fluid.gravity != Vector() && !sink && fields.settled("/cell_types"))
+  fields.attempt([&] {
+    const bool sink = std::any_of(types.begin(), types.end(),
+                                  [&](const CellType& type) { return type.interior_density != fluid.density; });
+    if (fluid.gravity == Vector() || sink || !fields.settled("/cell_types")) return;
     fields.refuse_key("/fluid/gravity",
                       "gravity acts on cells of another density than the fluid's, and there are none\n"
                       "give a cell type \"interior_density\"; a force on the fluid itself is body_force");
+  });
   return types;
 }
 

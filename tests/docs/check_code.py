@@ -298,6 +298,7 @@ BLOCKS = [
     ("docs/scene.md", '{"name": "carry"', part_of_scene("stages")),
     ("docs/scene.md", '{"name": "channel"', part_of_scene("stages")),
     ("docs/scene.md", '{"name": "shake"', part_of_scene("stages")),
+    ("docs/scene.md", '{"name": "pull"', part_of_scene("stages")),
     ("docs/scene.md", '{"between": ["rbc", "rbc"], "model": "morse"', part_of_scene("interactions")),
     ("docs/scene.md", '{"between": ["rbc", "wall"], "model": "repulsion"', part_of_scene("interactions")),
     ("docs/scene.md", '{"between": ["rbc", "self"], "model": "repulsion"', part_of_scene("interactions")),
