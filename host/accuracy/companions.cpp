@@ -120,7 +120,8 @@ Json on_lattice(const scene::Scene& scene, const LatticeSize& nodes) {
   changed["domain"]["nodes"] = nodes;
   for (const scene::CellType& type : scene.cell_types) {
     Json& cell = changed["cell_types"][type.name];
-    if (type.triangles > 0) cell["triangles"] = shape::divided_triangles(type.triangles, coarser);
+    const bool fixed = type.stress_free && std::holds_alternative<scene::MeshFile>(type.stress_free->shape);
+    if (type.triangles > 0 && !fixed) cell["triangles"] = shape::divided_triangles(type.triangles, coarser);
     if (type.segments > 0) cell["segments"] = std::max(8L, std::lround(type.segments / coarser));
   }
   if (!changed.contains("numerics") || !changed["numerics"].is_object()) changed["numerics"] = Json::object();

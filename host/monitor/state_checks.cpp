@@ -89,14 +89,12 @@ std::optional<Failure> check_stretch(const core::Membranes& membranes, const sce
   const double limit = scene.checks.stretch;
   for (const int k : membranes.own_cells()) {
     const core::CellRange& cell = membranes.cells[k];
-    const auto* circle = std::get_if<scene::Circle>(&scene.cell_types[cell.type].shape);
-    const double placed = circle != nullptr ? circle->prestretch : 1.0;
-    const std::vector<double>& rest_length = membranes.type_of(cell).rest_length;
+    const core::RestShape& placed = membranes.type_of(cell);
     for (int i = cell.first; i < cell.end(); ++i) {
       const auto from = static_cast<std::size_t>(i), to = static_cast<std::size_t>(cell.next(i));
       const double dx = membranes.position[0][to] - membranes.position[0][from],
                    dy = membranes.position[1][to] - membranes.position[1][from];
-      const double stretch = std::hypot(dx, dy) / (placed * rest_length[i - cell.first]);
+      const double stretch = std::hypot(dx, dy) / placed.first_length(static_cast<std::size_t>(i - cell.first));
       if (stretch <= limit && stretch * limit >= 1) continue;
       Failure found = uneven_failure("a segment", k, stretch, limit, stage);
       found.place = {units::coordinate(membranes.position[0][from], units.length),
@@ -209,10 +207,7 @@ std::optional<Failure> check_cells(observe::Observer& observer, const scene::Sta
   std::optional<Failure> uneven;
   for (const int k : surfaces.own_cells()) {
     if (uneven) break;
-    const auto* sphere = std::get_if<scene::Sphere>(&scene.cell_types[surfaces.cells[k].type].shape);
-    const double placed = sphere != nullptr ? sphere->prestretch : 1.0;
-    core::StretchRange stretch = core::stretch_range(surfaces, k);
-    stretch.least /= placed, stretch.most /= placed;
+    const core::StretchRange stretch = core::stretch_range(surfaces, k, surfaces.type_of(k).nodes());
     const bool shrunk = !(stretch.least * limit >= 1);
     if (!shrunk && stretch.most <= limit) continue;
     uneven = at(uneven_failure("an edge", k, shrunk ? stretch.least : stretch.most, limit, *setting.stage), middle(k));

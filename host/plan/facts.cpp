@@ -111,7 +111,13 @@ double limit_between(std::span<const AtTau> table, const scene::Scene& scene, do
 MembraneFacts membrane_facts(const Models& models, std::size_t type, const scene::StageSetting& stage,
                              const StageModels& made, const TypeFacts& of_type) {
   MembraneFacts facts;
-  const scene::Shape& shape = models.scene->cell_types[type].shape;
+  const scene::CellType& cell = models.scene->cell_types[type];
+  const scene::Shape& shape = cell.shape;
+  if (cell.stress_free && models.has_cells) {
+    const int dimension = models.scene->domain.dimension();
+    facts.first = shape::first_stretch(cell, made.membranes[type], stage.units, dimension);
+    facts.tension = stage.units.to_lattice(facts.first->tension_N_per_m, units::dimension::tension);
+  }
   const auto* circle = std::get_if<scene::Circle>(&shape);
   const auto* sphere = std::get_if<scene::Sphere>(&shape);
   double at_rest = 0;
@@ -120,6 +126,10 @@ MembraneFacts membrane_facts(const Models& models, std::size_t type, const scene
     if (!planned.active()) continue;
     const core::MembraneLaw& law = made.membranes[type][next++];
     facts.stiffness += law;
+    if (facts.first)
+      facts.stiffness.stretching +=
+          std::max(0.0, core::stretching_stiffness(law, {facts.first->least, facts.first->most}) -
+                            core::stretching_stiffness(law));
     const double stretching = core::stretching_stiffness(law, {1.0});
     at_rest += stretching;
     if (planned.manifest->gives_output("tension_by_stretch")) facts.elastic_modulus += stretching;
@@ -165,10 +175,10 @@ ModelFacts model_facts(const Models& models, const scene::StageSetting& stage, c
   for (std::size_t type = 0; type < made.membranes.size(); ++type) {
     facts.membranes.push_back(membrane_facts(models, type, stage, made, types[type]));
     add_coupling(models, type, stage.units.length, types[type], facts);
-    const bool sphere = std::holds_alternative<scene::Sphere>(models.scene->cell_types[type].shape);
     facts.prestress_compression =
         std::max(facts.prestress_compression, compression_by_pressure * std::abs(facts.membranes[type].tension) *
-                                                  (sphere ? 2 : 1) * stage.units.length / types[type].radius);
+                                                  (models.scene->domain.dimension() - 1) * stage.units.length /
+                                                  types[type].radius);
   }
   for (std::size_t i = 0; i < models.interactions.size(); ++i) {
     const PlannedModel& model = models.interactions[i];

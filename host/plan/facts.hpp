@@ -17,6 +17,7 @@
 #include "json/json.hpp"
 #include "models.hpp"
 #include "potential_shape.hpp"
+#include "shape/rest_shapes.hpp"
 
 namespace rouleau::plan {
 
@@ -35,7 +36,8 @@ struct MembraneFacts {
   core::Stiffness stiffness;   ///< largest near rest
   double elastic_modulus = 0;  ///< d tension / d stretch at rest, of laws that give it
   double recovery_rate = 0;    ///< Es/(mu a), 1/s: Es a third of the stretching stiffness, as of a neo-Hookean membrane
-  double tension = 0;          ///< of a circle or sphere at its prestretch
+  double tension = 0;          ///< of a circle or sphere at its prestretch, or of the first state
+  std::optional<shape::FirstStretch> first = {};  ///< with a stress-free shape
 };
 
 /// What the models of a stage amount to. Lattice units.

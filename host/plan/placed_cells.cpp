@@ -18,42 +18,15 @@
 #include "scene/cell_table.hpp"
 #include "shape/crowding.hpp"
 #include "shape/extent.hpp"
-#include "shape/outline.hpp"
+#include "shape/rest_shapes.hpp"
 #include "shape/surface.hpp"
 
 namespace rouleau::plan {
-namespace {
-
-core::RestShape rest_shape(const scene::CellType& type, double spacing) {
-  std::vector<double> x, y;
-  for (const Eigen::Vector2d& node : shape::make_outline(type.shape, type.segments).nodes) {
-    x.push_back(node.x() / spacing);
-    y.push_back(node.y() / spacing);
-  }
-  const auto* circle = std::get_if<scene::Circle>(&type.shape);
-  return core::make_rest_shape(std::move(x), std::move(y), circle != nullptr ? circle->prestretch : 1.0);
-}
-
-core::RestSurface rest_surface(const scene::CellType& type, double spacing) {
-  core::TriangleSurface surface = shape::make_surface(type);
-  for (core::Vec<3>& node : surface.nodes) node /= spacing;
-  const auto* sphere = std::get_if<scene::Sphere>(&type.shape);
-  return core::rest_surface(surface, sphere != nullptr ? sphere->prestretch : 1.0);
-}
-
-void add_type(core::Membranes& cells, const scene::CellType& type, double spacing) {
-  cells.types.push_back(std::make_shared<const core::RestShape>(rest_shape(type, spacing)));
-}
-void add_type(core::Surfaces& cells, const scene::CellType& type, double spacing) {
-  cells.types.push_back(std::make_shared<const core::RestSurface>(rest_surface(type, spacing)));
-}
-
-}  // namespace
 
 template <int D>
 core::Cells<D> without_cells(const scene::Scene& scene, double spacing) {
   core::Cells<D> cells;
-  for (const scene::CellType& type : scene.cell_types) add_type(cells, type, spacing);
+  for (const scene::CellType& type : scene.cell_types) shape::add_type(cells, type, spacing);
   return cells;
 }
 template core::Membranes without_cells<2>(const scene::Scene&, double);

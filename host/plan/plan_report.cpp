@@ -333,6 +333,12 @@ PlanReport make_report(const Plan& plan) {
   report.attracting = attracting_types(plan, report.wells);
   report.close_gap = plan.scene->output.aggregate_gap;
   report.warnings = warnings_of(plan, report.limits, report.wells);
+  for (const MembraneFacts& membrane : plan.facts.stages.front().models->membranes) {
+    if (membrane.first) report.first_stretches.push_back(*membrane.first);
+  }
+  for (const scene::CellType& type : plan.scene->cell_types) {
+    if (const std::string doubt = shape::doubt_of_rest(type); !doubt.empty()) report.warnings.push_back(doubt);
+  }
   report.dimensionless = dimensionless_numbers(plan, report.wells);
   report.conversions = conversion_table(plan);
   report.packings = packed_cells(*plan.scene);

@@ -68,8 +68,9 @@ struct PlanReport {
   std::vector<std::array<std::string, 2>> attracting;  ///< attracting_types()
   double close_gap = 0;                                ///< m; cells are close below it: output.aggregate_gap
   std::vector<PackedCells> packings;
-  std::vector<LateStart> late_starts;  ///< by more than 1 % of the stage's strain
-  std::optional<BoxShare> box_share;   ///< of one cell or two; of more the box is what is computed
+  std::vector<shape::FirstStretch> first_stretches;  ///< of types with a stress-free shape
+  std::vector<LateStart> late_starts;                ///< by more than 1 % of the stage's strain
+  std::optional<BoxShare> box_share;                 ///< of one cell or two; of more the box is what is computed
   Estimate estimate;
 };
 

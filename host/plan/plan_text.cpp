@@ -122,6 +122,13 @@ std::string to_text(const Plan& plan, const PlanReport& report) {
         << ")\n";
   }
 
+  if (!report.first_stretches.empty()) out << "\nFirst shapes against stress-free ones\n";
+  for (const shape::FirstStretch& first : report.first_stretches) {
+    out << "  " << first.type << ": principal stretches from " << formatted(first.least) << " to "
+        << formatted(first.most) << ", elastic energy " << formatted(first.energy_J_per_m2) << " J/m2 and tension "
+        << formatted(first.tension_N_per_m) << " N/m on average\n";
+  }
+
   out << "\nDimensionless numbers\n";
   for (const auto& [name, value] : report.dimensionless) out << "  " << padded(name, 24) << formatted(value) << "\n";
   if (!scene.fluid.inertia) {
@@ -176,6 +183,7 @@ nlohmann::json shared_sections(const PlanReport& report) {
   return {{"warnings", report.warnings},
           {"conversions", report.conversions},
           {"packings", report.packings},
+          {"first_stretches", report.first_stretches},
           {"limits", report.limits},
           {"dimensionless", report.dimensionless},
           {"wells", report.wells},

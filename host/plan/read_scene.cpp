@@ -19,6 +19,7 @@
 #include "shape/outline.hpp"
 #include "shape/passages.hpp"
 #include "shape/random_cells.hpp"
+#include "shape/surface.hpp"
 
 namespace rouleau::plan {
 namespace {
@@ -146,6 +147,7 @@ ReadScene completed(const OpenScene& open, const NumericsBounds& bounds, Faults&
   std::optional<NumericsChoice> choice;
   auto document = std::make_shared<json::Document>(open.filled_in(bounds, choice));
   ReadScene read{scene::read_scene(std::move(document), faults), std::move(choice)};
+  if (faults.empty()) faults.attempt([&] { shape::check_stress_free(read.scene); });
   if (faults.empty()) faults.attempt([&] { complete_feed(read.scene); });
   if (faults.empty()) open.build_walls(read.scene, faults);
   if (faults.empty()) {

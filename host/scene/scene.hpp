@@ -163,13 +163,22 @@ struct Sphere {
 };  ///< in three dimensions, as a circle
 struct Ellipsoid {
   Vector semi_axes;
-};  ///< m, along x, y and z at angle 0
+  bool even =
+      false;  ///< an oblate spheroid about y with nodes at equal distances along meridians, as the disc has them
+};            ///< m, along x, y and z at angle 0
 struct MeshFile {
   std::filesystem::path file;
   double unit;
 };  ///< a surface of triangles from a file, whose coordinates are in this unit, m
 /// Circle and ellipse are of two dimensions, sphere, ellipsoid and mesh of three.
 using Shape = std::variant<Biconcave, Circle, Ellipse, Sphere, Ellipsoid, MeshFile>;
+
+/// Where the laws in the plane of a membrane rest, if that is not the shape that the cell begins with.
+struct StressFree {
+  Shape shape;
+  bool sized;           ///< else it has the area, or in two dimensions the perimeter, of the first shape
+  std::string pointer;  ///< its place in the scene
+};
 
 struct CellType {
   std::string name;
@@ -179,6 +188,7 @@ struct CellType {
   std::vector<ModelChoice> membrane;  ///< laws that add up
   double interior_density = 0;        ///< kg/m3; that of the fluid where it is not written
   int triangles = 0;                  ///< of a surface: 20 n^2; 0 in two dimensions, and of a mesh, whose file has them
+  std::optional<StressFree> stress_free = {};
 
   /// Of its outline or, but of a mesh, its surface.
   [[nodiscard]] int nodes() const { return segments > 0 ? segments : triangles / 2 + 2; }

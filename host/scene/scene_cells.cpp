@@ -6,6 +6,7 @@
 
 #include "base/text.hpp"
 #include "cell_table.hpp"
+#include "core/surface/triangle_surface.hpp"
 #include "json/json_pointer.hpp"
 #include "scene_reader.hpp"
 
@@ -28,7 +29,8 @@ bool is_plain_name(const std::string& name) {
 void check_shape(const SceneFields& fields, const std::string& pointer, int dimension) {
   const std::size_t own = dimension - 2, other = 3 - dimension;
   using Names = std::array<const char*, 2>;  // of what is alike in the plane and in space
-  for (const Names& names : {Names{"circle", "sphere"}, Names{"ellipse", "ellipsoid"}, Names{"biconcave", "mesh"}}) {
+  for (const Names& names : {Names{"circle", "sphere"}, Names{"ellipse", "ellipsoid"}, Names{"ellipse", "spheroid"},
+                             Names{"biconcave", "mesh"}}) {
     const std::string wrong = names[other];
     if (wrong == "biconcave" || !fields.has(pointer + "/" + wrong)) continue;
     fields.refuse_key(pointer + "/" + wrong, in_quotes(wrong) + " is a shape of " + words_of(5 - dimension).number +
@@ -37,12 +39,61 @@ void check_shape(const SceneFields& fields, const std::string& pointer, int dime
   }
 }
 
-Shape read_shape(const SceneFields& fields, const std::string& pointer, int dimension) {
+core::SurfaceContent content_in_space(const Shape& shape) {
+  constexpr int n = 64;  // area and volume are right to 0.05 %
+  if (const auto* disc = std::get_if<Biconcave>(&shape)) return content_of(core::biconcave_disc(n, disc->radius));
+  if (const auto* solid = std::get_if<Ellipsoid>(&shape))
+    return content_of(core::ellipsoid(n, solid->semi_axes.in<3>()));
+  return content_of(core::ellipsoid(n, core::Vec<3>::Constant(std::get<Sphere>(shape).radius)));
+}
+
+/// Where the sizes come from that a shape does not say.
+struct Missing {
+  const Shape* other;    ///< has the area and volume; null: nothing has
+  bool* size = nullptr;  ///< set where the size is not written, and is that of a sphere of radius 1; null: refused then
+};
+
+Ellipsoid read_spheroid(const SceneFields& fields, const std::string& pointer, const Missing& missing) {
+  const std::string by_volume = pointer + "/volume", by_share = pointer + "/reduced_volume";
+  const bool has_area = fields.has(pointer + "/area"), has_volume = fields.has(by_volume),
+             has_share = fields.has(by_share);
+  if (has_volume && has_share) fields.refuse_key(by_share, "leave out volume, or reduced_volume: one says the other");
+  if (missing.other == nullptr &&
+      ((!has_area && (missing.size == nullptr || has_volume)) || (!has_volume && !has_share)))
+    fields.refuse(pointer, "this spheroid has no " + std::string(has_area ? "volume" : "area") +
+                               "\ngive \"area\", such as \"135 um^2\", and \"volume\" or \"reduced_volume\"");
+  if (missing.size != nullptr) *missing.size = !has_area;
+  core::SurfaceContent content{4 * std::numbers::pi, 0};
+  if (missing.other != nullptr) content = content_in_space(*missing.other);
+  content.area = fields.quantity_or(pointer + "/area", "m2", range::area, content.area);
+  content.volume = fields.quantity_or(by_volume, "m3", range::volume, content.volume);
+  const double of_sphere = std::pow(content.area, 1.5) / (6 * std::sqrt(std::numbers::pi));
+  if (has_share) content.volume = of_sphere * fields.value<double>(by_share);
+  constexpr double flattest = 0.05, rounding = 1e-9;
+  if (content.reduced_volume() > 1 + rounding || content.reduced_volume() < flattest)
+    fields.refuse(has_volume ? by_volume : pointer,
+                  "a spheroid of this area has between " + number(1e18 * flattest * of_sphere, 4) + " and " +
+                      number(1e18 * of_sphere, 4) + " um3, and its volume is " + number(1e18 * content.volume, 4) +
+                      " um3\ntake another volume, or another area");
+  const bool prolate = fields.value_or(pointer + "/kind", std::string()) == "prolate";
+  const core::Vec<3> axes = core::spheroid_axes(content, prolate);
+  return {Vector{axes.x(), axes.y(), axes.z()}, !prolate};
+}
+
+/// Of a sphere or a circle.
+double read_radius(const SceneFields& fields, const std::string& pointer, const Missing& missing) {
+  if (missing.size == nullptr) fields.require(pointer, "radius", "such as \"3 um\"");
+  if (missing.size != nullptr) *missing.size = !fields.has(pointer + "/radius");
+  return fields.quantity_or(pointer + "/radius", "m", range::length, 1.0);
+}
+
+Shape read_shape(const SceneFields& fields, const std::string& pointer, int dimension, const Missing& missing) {
   check_shape(fields, pointer, dimension);
   if (fields.has(pointer + "/sphere")) {
-    return Sphere{fields.quantity(pointer + "/sphere/radius", "m", range::length),
+    return Sphere{read_radius(fields, pointer + "/sphere", missing),
                   fields.value_or(pointer + "/sphere/prestretch", 1.0)};
   }
+  if (fields.has(pointer + "/spheroid")) return read_spheroid(fields, pointer + "/spheroid", missing);
   if (fields.has(pointer + "/ellipsoid")) {
     return Ellipsoid{fields.quantities(pointer + "/ellipsoid/semi_axes", "m", range::length, 3)};
   }
@@ -52,10 +103,29 @@ Shape read_shape(const SceneFields& fields, const std::string& pointer, int dime
   if (fields.has(pointer + "/biconcave"))
     return Biconcave{fields.quantity(pointer + "/biconcave/radius", "m", range::length)};
   if (fields.has(pointer + "/circle")) {
-    return Circle{fields.quantity(pointer + "/circle/radius", "m", range::length),
+    return Circle{read_radius(fields, pointer + "/circle", missing),
                   fields.value_or(pointer + "/circle/prestretch", 1.0)};
   }
   return Ellipse{fields.quantities(pointer + "/ellipse/semi_axes", "m", range::length, 2)};
+}
+
+/// Both shapes of a type.
+void read_shapes(const SceneFields& fields, const std::string& pointer, int dimension, CellType& type) {
+  const std::string free = pointer + "/stress_free";
+  const Shape* other = nullptr;
+  if (fields.has(free)) {
+    for (const std::string& round :
+         {pointer + "/shape/sphere", pointer + "/shape/circle", free + "/sphere", free + "/circle"}) {
+      if (fields.has(round + "/prestretch"))
+        fields.refuse_key(round + "/prestretch",
+                          "\"stress_free\" says how far the membrane is stretched\nleave this out");
+    }
+    bool open = false;
+    const Shape shape = read_shape(fields, free, dimension, {nullptr, &open});
+    type.stress_free = {shape, !open, free};
+    if (dimension == 3 && !open && !std::holds_alternative<MeshFile>(shape)) other = &type.stress_free->shape;
+  }
+  type.shape = read_shape(fields, pointer + "/shape", dimension, {other});
 }
 
 /// Of the shape's surface, m2; of a mesh 0.
@@ -232,7 +302,7 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, const FluidProp
     const auto require = [&](const char* key) { fields.require(pointer, key, "or \"from\", which has it"); };
     fields.attempt([&] {
       require("shape");
-      type.shape = read_shape(fields, pointer + "/shape", domain.dimension());
+      read_shapes(fields, pointer, domain.dimension(), type);
     });
     type.segments = 0;
     fields.attempt([&] {

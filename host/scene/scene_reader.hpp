@@ -30,6 +30,8 @@ struct AllowedRange {
 namespace range {
 inline constexpr AllowedRange length{1e-12, 1.0, 1e-9, 1e-2, "um"};                 ///< m
 inline constexpr AllowedRange unit_of_length{1e-12, 1.0, 1e-9, 1e-2, "um", false};  ///< m; a factor
+inline constexpr AllowedRange area{1e-24, 1.0, 1e-18, 1e-4, "um^2"};                ///< m2
+inline constexpr AllowedRange volume{1e-36, 1.0, 1e-27, 1e-6, "um^3"};              ///< m3
 inline constexpr AllowedRange place{-1.0, 1.0, -1e-2, 1e-2, "um"};                  ///< m
 inline constexpr AllowedRange time{1e-12, 1e9, 1e-9, 1e6, "s"};                     ///< s
 inline constexpr AllowedRange density{1e-3, 1e6, 10.0, 1e5, "g/cm3"};               ///< kg/m3

@@ -109,6 +109,14 @@ Outline make_outline(const scene::Shape& shape, int segments) {
   return outline;
 }
 
+Outline stress_free_outline(const scene::CellType& type, const Outline& first) {
+  Outline made = make_outline(type.stress_free->shape, static_cast<int>(first.nodes.size()));
+  const auto segment = [](const Outline& outline) { return (outline.nodes[1] - outline.nodes[0]).norm(); };
+  const double scale = segment(first) / segment(made);
+  for (Eigen::Vector2d& node : made.nodes) node *= type.stress_free->sized ? 1 : scale;
+  return made;
+}
+
 double shape_perimeter(const scene::Shape& shape) {
   if (const auto* biconcave = std::get_if<scene::Biconcave>(&shape)) return 4.9285 * biconcave->radius;
   if (const auto* circle = std::get_if<scene::Circle>(&shape)) return full_turn * circle->radius;

@@ -18,6 +18,9 @@ struct Outline {
 /// Throws std::invalid_argument for fewer than 3 segments or a size that is not positive.
 Outline make_outline(const scene::Shape& shape, int segments);
 
+/// The outline in which a type with one is free of stress, with a node for each of `first`, which is of its shape.
+Outline stress_free_outline(const scene::CellType& type, const Outline& first);
+
 /// Length of the membrane as placed, m, of a shape of two dimensions: exact for circles, to 1e-5 for others
 /// (Ramanujan's formula for ellipses).
 double shape_perimeter(const scene::Shape& shape);

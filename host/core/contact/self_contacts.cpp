@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "contact_list.hpp"
 #include "segment_table.hpp"
@@ -39,6 +40,7 @@ SelfContacts::SelfContacts(const Membranes& membranes, const std::vector<double>
     const int count = static_cast<int>(rest.x.size());
     type.reach.resize(rest.x.size(), {0, 0});
     const double apart = std::numbers::pi / 2 * type.cutoff;
+    const double whole = std::accumulate(rest.rest_length.begin(), rest.rest_length.end(), 0.0);
     for (int node = 0; node < count; ++node) {
       // Begins of segments that are far enough ahead, and ends of those that are far enough behind.
       double along = 0;
@@ -46,7 +48,7 @@ SelfContacts::SelfContacts(const Membranes& membranes, const std::vector<double>
       for (int segment = 0; segment < count; ++segment) {
         if (along < apart) begin = segment + 1;
         along += rest.rest_length[(node + segment) % count];
-        if (rest.rest_perimeter - along >= apart) end = segment + 1;
+        if (whole - along >= apart) end = segment + 1;
       }
       if (begin < end) type.reach[node] = {node + begin, node + end};
     }

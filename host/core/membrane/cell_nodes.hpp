@@ -19,7 +19,7 @@ namespace rouleau::core {
 struct CellRange : Segments {
   int type;                   ///< index into the setup's cell types
   double rest_area = 0;       ///< of an outline, enclosed as created: the fluid inside cannot leave
-  double rest_perimeter = 0;  ///< of an outline: sum of the rest lengths
+  double rest_perimeter = 0;  ///< of an outline: RestShape::rest_perimeter
 };
 
 /// What one rank has to do with a cell.

@@ -61,10 +61,14 @@ StretchRange stretch_range(const Membranes& membranes, const CellRange& cell) {
   const std::vector<double>& rest_length = membranes.type_of(cell).rest_length;
   for (int i = cell.first; i < cell.end(); ++i) {
     const double length = (node(membranes, cell.next(i)) - node(membranes, i)).norm();
-    const double stretch = length / rest_length[i - cell.first];
-    range.least = std::min(range.least, stretch);
-    range.most = std::max(range.most, stretch);
+    range.add(length / rest_length[i - cell.first]);
   }
+  return range;
+}
+
+StretchRange first_stretch(const RestShape& shape) {
+  StretchRange range;
+  for (std::size_t i = 0; i < shape.x.size(); ++i) range.add(shape.first_length(i) / shape.rest_length[i]);
   return range;
 }
 

@@ -1,6 +1,7 @@
 // What can be read off a closed polygon: area, perimeter, inertia ellipse, distances between cells.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include "core/domain/images.hpp"
@@ -18,8 +19,14 @@ double perimeter(const Membranes& membranes, const CellRange& cell);
 /// Smallest and largest stretch of a segment: length over rest length.
 struct StretchRange {
   double least = std::numeric_limits<double>::infinity(), most = 0;
+  void add(double stretch) {
+    least = std::min(least, stretch);
+    most = std::max(most, stretch);
+  }
 };
 StretchRange stretch_range(const Membranes& membranes, const CellRange& cell);
+/// Of the shape that cells are created with.
+StretchRange first_stretch(const RestShape& shape);
 /// Centroid of the enclosed area.
 Vec<2> centroid(const Membranes& membranes, const CellRange& cell);
 

@@ -26,6 +26,14 @@ RestShape make_rest_shape(std::vector<double> x, std::vector<double> y, double p
   return shape;
 }
 
+RestShape created_as(const RestShape& first, RestShape rest) {
+  rest.x = first.x;
+  rest.y = first.y;
+  rest.rest_area = first.rest_area;
+  rest.rest_perimeter = first.rest_perimeter;
+  return rest;
+}
+
 void add_cell(Membranes& membranes, int type, double x, double y, double angle) {
   const RestShape& shape = *membranes.types.at(type);
   membranes.cells.push_back({{.first = membranes.node_count(), .count = static_cast<int>(shape.x.size())},

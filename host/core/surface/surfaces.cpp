@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 namespace rouleau::core {
@@ -42,15 +43,44 @@ RestSurface make_rest_surface(Mesh mesh, std::vector<double> x, std::vector<doub
   return rest;
 }
 
+RestSurface created_as(const RestSurface& first, RestSurface rest) {
+  rest.stress_free = {std::move(rest.x), std::move(rest.y), std::move(rest.z)};
+  rest.x = first.x;
+  rest.y = first.y;
+  rest.z = first.z;
+  rest.rest_volume = first.rest_volume;
+  rest.rest_surface_area = first.rest_surface_area;
+  return rest;
+}
+
 StretchRange stretch_range(const Surfaces& surfaces, int cell) {
   const RestSurface& rest = surfaces.type_of(cell);
-  const Nodes now = surfaces.nodes(cell), then = rest.nodes();
-  const double prestretch = std::sqrt(surface_area(rest.mesh, then) / rest.rest_surface_area);
+  const Nodes then = rest.nodes_at_rest();
+  const double at_rest = std::accumulate(rest.triangle_area.begin(), rest.triangle_area.end(), 0.0);
+  return stretch_range(surfaces, cell, then, std::sqrt(surface_area(rest.mesh, then) / at_rest));
+}
+
+StretchRange stretch_range(const Surfaces& surfaces, int cell, Nodes then, double factor) {
+  const Nodes now = surfaces.nodes(cell);
   StretchRange range;
-  for (const Mesh::Edge& edge : rest.mesh.edges()) {
-    const double stretch = prestretch * (now[edge.b] - now[edge.a]).norm() / (then[edge.b] - then[edge.a]).norm();
-    range.least = std::min(range.least, stretch);
-    range.most = std::max(range.most, stretch);
+  for (const Mesh::Edge& edge : surfaces.type_of(cell).mesh.edges())
+    range.add(factor * (now[edge.b] - now[edge.a]).norm() / (then[edge.b] - then[edge.a]).norm());
+  return range;
+}
+
+StretchRange first_stretch(const RestSurface& surface) {
+  StretchRange range;
+  const Nodes nodes = surface.nodes();
+  for (int t = 0; t < surface.mesh.triangle_count(); ++t) {
+    const auto& [a, b, c] = surface.mesh.triangles()[t];
+    const Vec<3> e1 = nodes[b] - nodes[a], e2 = nodes[c] - nodes[a];
+    // Eigenvalues of the metric over that at rest.
+    const double h11 = surface.inverse_11[t], h12 = surface.inverse_12[t], h22 = surface.inverse_22[t];
+    const double half = (h11 * e1.dot(e1) + 2 * h12 * e1.dot(e2) + h22 * e2.dot(e2)) / 2;
+    const double product = (h11 * h22 - h12 * h12) * e1.cross(e2).squaredNorm();
+    const double apart = std::sqrt(std::max(0.0, half * half - product));
+    range.add(std::sqrt(half + apart));
+    range.add(std::sqrt(product / (half + apart)));
   }
   return range;
 }

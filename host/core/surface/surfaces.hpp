@@ -26,9 +26,16 @@ struct RestSurface {
   std::vector<double> third_area;      ///< at rest, a third of the triangles around each node: what area_ratio is over
   std::vector<double> rest_curvature;  ///< of the shape as created, over node_area
   double rest_volume = 0;              ///< as created: the fluid inside cannot leave
-  double rest_surface_area = 0;        ///< sum of the triangles' areas at rest
+  double rest_surface_area = 0;        ///< sum of the triangles' areas at rest; with a stress-free shape as created
+
+  /// Nodes of the shape in which it is free of stress, where that is another than the one it is created with.
+  std::array<std::vector<double>, 3> stress_free;
 
   [[nodiscard]] Nodes nodes() const { return {x.data(), y.data(), z.data()}; }
+  [[nodiscard]] Nodes nodes_at_rest() const {
+    return stress_free[0].empty() ? nodes()
+                                  : Nodes{stress_free[0].data(), stress_free[1].data(), stress_free[2].data()};
+  }
   /// Of each node at rest: its share of the area, as it is of the perimeter of an outline.
   [[nodiscard]] const std::vector<double>& node_measure() const { return node_area; }
 };
@@ -36,6 +43,8 @@ struct RestSurface {
 /// `prestretch`: lengths as given over those at rest.
 RestSurface make_rest_surface(Mesh mesh, std::vector<double> x, std::vector<double> y, std::vector<double> z,
                               double prestretch = 1);
+/// Created in the shape of `first`, with its area and volume, and at rest as `rest` is; both have the same mesh.
+RestSurface created_as(const RestSurface& first, RestSurface rest);
 
 /// Closed surfaces: the nodes of a cell are in the order of its type's mesh.
 struct Surfaces : CellNodes {
@@ -56,6 +65,10 @@ using Cells = std::conditional_t<D == 2, Membranes, Surfaces>;
 
 /// Smallest and largest stretch of an edge: length over rest length.
 StretchRange stretch_range(const Surfaces& surfaces, int cell);
+/// The same of length over that of other nodes, times a factor.
+StretchRange stretch_range(const Surfaces& surfaces, int cell, Nodes then, double factor = 1);
+/// Smallest and largest principal stretch of any triangle, as created against its state of rest.
+StretchRange first_stretch(const RestSurface& surface);
 
 /// Adds a cell that rests, its shape's origin at `center`, turned by `rotation`.
 void add_cell(Surfaces& surfaces, int type, const Vec<3>& center,

@@ -1,5 +1,6 @@
 #include "triangle_surface.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -84,14 +85,47 @@ TriangleSurface ellipsoid(int n, const Vec<3>& semi_axes) {
   return made;
 }
 
-TriangleSurface biconcave_disc(int n, double radius) {
-  constexpr int steps = 4096;
-  // Length along the profile from the axis, at equal steps of the parameter from 0 to pi.
-  std::vector<double> length(steps + 1);
-  const auto point = [](double from_pole) -> std::pair<double, double> {
-    const Eigen::Vector2d place = biconcave_curve(1, std::numbers::pi / 2 - from_pole).place;
-    return {place.x(), place.y()};
+double SurfaceContent::reduced_volume() const { return 6 * std::sqrt(std::numbers::pi) * volume / std::pow(area, 1.5); }
+
+SurfaceContent content_of(const TriangleSurface& surface) {
+  SurfaceContent sum{0, 0};
+  for (const auto& [i, j, k] : surface.triangles) {
+    const Vec<3>&a = surface.nodes[i], &b = surface.nodes[j], &c = surface.nodes[k];
+    sum.area += (b - a).cross(c - a).norm() / 2;
+    sum.volume += a.dot(b.cross(c)) / 6;
+  }
+  return sum;
+}
+
+Vec<3> spheroid_axes(const SurfaceContent& content, bool prolate) {
+  // By the axis of symmetry over the others, which are 1.
+  const auto spheroid = [](double axis) -> SurfaceContent {
+    const double volume = 4 * std::numbers::pi / 3 * axis;
+    if (axis == 1) return {4 * std::numbers::pi, volume};
+    const double e = std::sqrt(axis < 1 ? 1 - axis * axis : 1 - 1 / (axis * axis));
+    const double shape = axis < 1 ? (1 - e * e) / e * std::atanh(e) : axis / e * std::asin(e);
+    return {2 * std::numbers::pi * (1 + shape), volume};
   };
+  constexpr int halvings = 200;
+  double flat = std::log(1e-6), round = 0;  // logarithms of the axis, of a prolate one turned over
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = (flat + round) / 2;
+    const bool too_flat = spheroid(std::exp(prolate ? -middle : middle)).reduced_volume() < content.reduced_volume();
+    (too_flat ? flat : round) = middle;
+  }
+  const double axis = std::exp(prolate ? -round : round), across = std::sqrt(content.area / spheroid(axis).area);
+  return prolate ? Vec<3>(axis * across, across, across) : Vec<3>(across, axis * across, across);
+}
+
+namespace {
+
+/// A curve from the y axis to the y axis, by its parameter from 0 to pi, turned about it. Nodes lie at equal distances
+/// along meridians.
+template <class Curve>
+TriangleSurface turned(int n, double scale_of_all, const Curve& point) {
+  constexpr int steps = 4096;
+  // Length along the profile from the axis, at equal steps of the parameter.
+  std::vector<double> length(steps + 1);
   for (int k = 1; k <= steps; ++k) {
     const auto [x0, y0] = point(std::numbers::pi * (k - 1) / steps);
     const auto [x1, y1] = point(std::numbers::pi * k / steps);
@@ -106,9 +140,24 @@ TriangleSurface biconcave_disc(int n, double radius) {
     const double share = (wanted - length[above - 1]) / (length[above] - length[above - 1]);
     const auto [r, y] = point(std::numbers::pi * (static_cast<double>(above - 1) + share) / steps);
     const double scale = from_axis > 0 ? r / from_axis : 0;
-    node = radius * Vec<3>(scale * node.x(), y, scale * node.z());
+    node = scale_of_all * Vec<3>(scale * node.x(), y, scale * node.z());
   }
   return made;
+}
+
+}  // namespace
+
+TriangleSurface biconcave_disc(int n, double radius) {
+  return turned(n, radius, [](double from_pole) -> std::pair<double, double> {
+    const Eigen::Vector2d place = biconcave_curve(1, std::numbers::pi / 2 - from_pole).place;
+    return {place.x(), place.y()};
+  });
+}
+
+TriangleSurface even_spheroid(int n, double across, double along) {
+  return turned(n, across, [=](double from_pole) -> std::pair<double, double> {
+    return {std::sin(from_pole), along / across * std::cos(from_pole)};
+  });
 }
 
 RestSurface rest_surface(const TriangleSurface& surface, double prestretch) {

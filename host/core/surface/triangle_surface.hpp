@@ -25,6 +25,18 @@ TriangleSurface unit_sphere(int n);
 /// Semi-axes along x, y and z.
 TriangleSurface ellipsoid(int n, const Vec<3>& semi_axes);
 
+/// Area of a surface, and the volume that it encloses.
+struct SurfaceContent {
+  double area, volume;
+  /// The volume over that of the sphere of the same area.
+  [[nodiscard]] double reduced_volume() const;
+};
+SurfaceContent content_of(const TriangleSurface& surface);
+
+/// Semi-axes of the oblate spheroid with its axis along y, or the prolate one with its axis along x, of this area and
+/// volume; the reduced volume is above 0 and at most 1.
+Vec<3> spheroid_axes(const SurfaceContent& content, bool prolate);
+
 /// A place on a curve, and its derivative by the curve's angle.
 struct CurvePoint {
   Eigen::Vector2d place, derivative;
@@ -36,5 +48,7 @@ CurvePoint biconcave_curve(double radius, double angle);
 
 /// That curve turned about y. Nodes lie at equal distances along meridians.
 TriangleSurface biconcave_disc(int n, double radius);
+/// A spheroid with these semi-axes across y and along it, its nodes likewise.
+TriangleSurface even_spheroid(int n, double across, double along);
 
 }  // namespace rouleau::core
