@@ -29,8 +29,15 @@ core::RestSurface at_rest(core::TriangleSurface surface, double spacing, double 
   return core::rest_surface(surface, prestretch);
 }
 
-void add_one(core::Membranes& cells) { core::add_cell(cells, 0, 0, 0, 0); }
-void add_one(core::Surfaces& cells) { core::add_cell(cells, 0, core::Vec<3>::Zero()); }
+/// Adds a cell; its principal stretches.
+core::StretchRange begin(core::Membranes& cells) {
+  core::add_cell(cells, 0, 0, 0, 0);
+  return core::stretch_range(cells, cells.cells[0]);
+}
+core::StretchRange begin(core::Surfaces& cells) {
+  core::add_cell(cells, 0, core::Vec<3>::Zero());
+  return core::first_stretch(cells.type_of(0));
+}
 
 double sum_of_sizes(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0, [](double sum, double x) { return sum + std::abs(x); });
@@ -59,14 +66,13 @@ FirstStretch first_stretch(const scene::CellType& type, const std::vector<core::
   return scene::in_dimension(dimension, [&]<int D>(std::integral_constant<int, D>) -> FirstStretch {
     core::Cells<D> cells;
     add_type(cells, type, units.length);
-    add_one(cells);
+    const auto [least, most] = begin(cells);
     core::BasicSolverSetup<D> setup;
     setup.cell_types.push_back({.laws = laws});
     auto forces = core::make_forces(setup, cells, nullptr);
     const std::vector<double> tensions = forces.tensions(cells, 0);
     const core::MembraneEnergy energy = forces.energies(cells);
     const double unit = units.unit(units::dimension::tension), told = energy.unknown.empty() ? energy.tension : NAN;
-    const auto [least, most] = core::first_stretch(*cells.types[0]);
     return {type.name, least, most, unit * told / sum_of_sizes(cells.types[0]->node_measure()),
             unit * sum_of_sizes(tensions) / static_cast<double>(tensions.size())};
   });

@@ -219,6 +219,19 @@ class Fields_in_space(Case):
             for places, first in ((field.x, 1.25e-6), (field.y, 2.25e-6), (field.z, 3.25e-6)):
                 self.assertTrue(numpy.allclose(places, first + 1e-6 * numpy.arange(len(places)), atol=1e-15))
 
+    def test_a_cell_is_written_as_a_mesh_with_which_another_run_begins_under_the_same_tension(self):
+        left = self.last_frame(self.SCENE, "before").cells[0]
+        left.write(f"{self.path}/left.obj")
+        scene = json.loads(json.dumps(self.SCENE))
+        capsule = scene["cell_types"]["capsule"]
+        capsule.update(shape={"mesh": {"file": f"{self.path}/left.obj", "unit": "1 um"}}, stress_free={"sphere": {"radius": "1.5 um"}})
+        del capsule["triangles"]
+        begun = rouleau.run(scene, f"{self.path}/after", progress=False).frame(index=0).cells[0]
+        self.assertGreater(left.tension.max(), 1e-8)
+        self.assertTrue(numpy.allclose(begun.tension, left.tension, rtol=1e-6, atol=1e-12))
+        places = [cell.outline - cell.outline.mean(axis=0) for cell in (left, begun)]
+        self.assertLess(abs(places[0] - places[1]).max(), 1e-12)
+
     def test_vanish_in_the_wall_of_a_tube_and_turn_about_its_axis(self):
         scene = json.loads(json.dumps(self.SCENE))
         scene["domain"] = {"size": ["2 um", "8 um", "8 um"], "nodes": [8, 32, 32], "walls": {"tube": {"radius": "3.8 um"}}}

@@ -66,12 +66,6 @@ StretchRange stretch_range(const Membranes& membranes, const CellRange& cell) {
   return range;
 }
 
-StretchRange first_stretch(const RestShape& shape) {
-  StretchRange range;
-  for (std::size_t i = 0; i < shape.x.size(); ++i) range.add(shape.first_length(i) / shape.rest_length[i]);
-  return range;
-}
-
 Vec<2> centroid(const Membranes& membranes, const CellRange& cell) {
   const Vec<2> origin = node(membranes, cell.first);
   const Moments sum = moments(membranes, cell, origin);

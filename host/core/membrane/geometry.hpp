@@ -25,8 +25,6 @@ struct StretchRange {
   }
 };
 StretchRange stretch_range(const Membranes& membranes, const CellRange& cell);
-/// Of the shape that cells are created with.
-StretchRange first_stretch(const RestShape& shape);
 /// Centroid of the enclosed area.
 Vec<2> centroid(const Membranes& membranes, const CellRange& cell);
 
