@@ -153,8 +153,8 @@ TEST_CASE("a sphere relaxes later by its membrane's viscosity over its shear mod
                      {"/cell_types/capsule/membrane/1/parameters=" + parameters.str()});
   };
   const SceneRun less = run(3e-9), more = run(12e-9);
-  const auto relaxation_time = [](const SceneRun& relaxing) {
-    const std::vector<double> time = relaxing.column("time_s"), d = relaxing.column("deformation");
+  const auto relaxation_time = [](const SceneRun& of) {
+    const std::vector<double> time = of.column("time_s"), d = of.column("deformation");
     const std::size_t end = d.size() - 1, begin = end - 8;  // the last 2 ms, when the faster mode is over
     return (time[end] - time[begin]) / std::log(d[begin] / d[end]);
   };

@@ -79,13 +79,13 @@ MembraneForces make_forces(const SolverSetup& setup, Membranes& membranes, const
 SurfaceForces make_forces(const BasicSolverSetup<3>& setup, Surfaces& surfaces, const SurfaceSlip* slip) {
   SurfaceForces forces(surfaces, laws_of(setup));
   std::vector<KernelResponse> responses;
-  std::vector<double> gain;
+  std::vector<double> moduli;
   for (const CellType& type : setup.cell_types) {
     const double shift = slip != nullptr ? slip_constants(setup.kernel, type.viscosity_ratio, 3).shift : 0;
     responses.push_back(kernel_response(setup.kernel, shift));
-    gain.push_back(responses.back().gain);
+    moduli.push_back(viscous_modulus(setup.viscosity(), responses.back()));
   }
-  forces.take_viscosity(surfaces, gain, setup.tension_unit);
+  forces.take_viscosity(surfaces, moduli, setup.tension_unit);
   if (setup.semi_implicit) forces.take_semi_implicit_steps(surfaces, setup.viscosity(), setup.tension_unit, responses);
   return forces;
 }

@@ -92,11 +92,11 @@ void SurfaceForces::take_semi_implicit_steps(Surfaces& surfaces, double viscosit
   }
 }
 
-void SurfaceForces::take_viscosity(Surfaces& surfaces, const std::vector<double>& gain, double tension_unit) {
+void SurfaceForces::take_viscosity(Surfaces& surfaces, const std::vector<double>& moduli, double tension_unit) {
   for (std::size_t t = 0; t < types_.size(); ++t) {
     const auto& laws = types_[t].laws;
     if (std::none_of(laws.begin(), laws.end(), [](const Law& law) { return law.viscous; })) continue;
-    types_[t].viscosity.emplace(surfaces, static_cast<int>(t), gain[t], tension_unit);
+    types_[t].viscosity.emplace(surfaces, static_cast<int>(t), moduli[t], tension_unit);
   }
 }
 
@@ -312,7 +312,7 @@ MembraneEnergy SurfaceForces::energies(const Surfaces& surfaces, const Ranks<3>&
     apply(type, surfaces.type_of(c), s, whole, &energy);
     if (type.viscosity) {
       energy.dissipation =
-          type.viscosity->power(type.mesh, arrays_of(type, s), surfaces, surfaces.cells[c], s.straining);
+          type.viscosity->power(type.mesh, arrays_of(type, s), surfaces, surfaces.cells[c]);
     }
     sum.add(c, energy);
   }

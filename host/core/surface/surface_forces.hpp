@@ -33,8 +33,8 @@ class SurfaceForces {
                                 const std::vector<KernelResponse>& responses);
 
   /// Viscosities that laws give are part of the forces from now on (SurfaceViscosity), with the motion of
-  /// surfaces.velocity. `gain`: of each cell type; `tension_unit` as above.
-  void take_viscosity(Surfaces& surfaces, const std::vector<double>& gain, double tension_unit);
+  /// surfaces.velocity. `moduli`: the stiffness that steps bear, of each cell type; `tension_unit` as above.
+  void take_viscosity(Surfaces& surfaces, const std::vector<double>& moduli, double tension_unit);
 
   /// Pass over cells: sets the forces.
   void run(Worker worker, Surfaces& surfaces);

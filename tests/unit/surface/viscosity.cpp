@@ -23,10 +23,10 @@ Surfaces moving_cell(const Eigen::Matrix3d& gradient, const Vec<3>& drift) {
   return s;
 }
 
-/// `gain`: one that is next to nothing makes an explicit step.
-SurfaceForces forces_of(Surfaces& s, const MembraneLaws& laws, double gain = 1) {
+/// `modulus`: one without end makes an explicit step.
+SurfaceForces forces_of(Surfaces& s, const MembraneLaws& laws, double modulus = 1) {
   SurfaceForces forces(s, {laws});
-  forces.take_viscosity(s, {gain}, 1);
+  forces.take_viscosity(s, {modulus}, 1);
   return forces;
 }
 
@@ -52,7 +52,7 @@ TEST_CASE("a surface that is strained is under Evans and Hochmuth's viscous stre
   gradient << 1, 2, -0.5, 0.3, -0.4, 1.5, 0.7, -1, 0.6;
   gradient *= 1e-3;
   Surfaces s = moving_cell(gradient, {0.01, 0.02, -0.03});
-  SurfaceForces forces = forces_of(s, viscous(), 1e-18);
+  SurfaceForces forces = forces_of(s, viscous(), 1e18);
   forces.run({}, s);
   // What is outside of a triangle pulls at both ends of each side by half of its length times the stress along its
   // normal.
@@ -96,7 +96,7 @@ TEST_CASE("a sphere that is blown up is resisted by its area viscosity alone") {
   for (int i = 0; i < s.node_count(); ++i) {
     for (int k = 0; k < 3; ++k) s.velocity[k][i] = rate * (s.nodes(0)[i] - Vec<3>(3, -2, 5))[k];
   }
-  SurfaceForces forces = forces_of(s, viscous(), 1e-18);
+  SurfaceForces forces = forces_of(s, viscous(), 1e18);
   forces.run({}, s);
   const double area = surface_area(s.types[0]->mesh, s.nodes(0));
   CHECK(forces.energies(s).dissipation == Approx(dilation * 4 * rate * rate * area).epsilon(1e-12));
