@@ -311,8 +311,7 @@ MembraneEnergy SurfaceForces::energies(const Surfaces& surfaces, const Ranks<3>&
     MembraneEnergy energy;
     apply(type, surfaces.type_of(c), s, whole, &energy);
     if (type.viscosity) {
-      energy.dissipation =
-          type.viscosity->power(type.mesh, arrays_of(type, s), surfaces, surfaces.cells[c]);
+      energy.dissipation = type.viscosity->power(type.mesh, arrays_of(type, s), surfaces, surfaces.cells[c]);
     }
     sum.add(c, energy);
   }

@@ -23,7 +23,7 @@ struct SurfaceArrays {
   double* normal[3];  ///< twice the area along the outer normal
   const double *stress_1, *stress_2;
   const double* viscous[3];  ///< viscous stress times area, along the sides: 11, 12, 22 (SurfaceViscosity)
-  double* force[3][3];  ///< on the first, second and third node
+  double* force[3][3];       ///< on the first, second and third node
   // of edges
   const int *edge_node[2], *edge_triangle[2];  ///< nodes a and b; the left and the right triangle
   double *turned_length, *edge_turn;           ///< length times turning angle; turning angle over twice the length

@@ -106,7 +106,8 @@ double SurfaceViscosity::power(const PaddedTriangles& mesh, const SurfaceArrays&
     for (int t = first; t < first + count && k < 3; ++t) {
       const auto motion = [&](int corner) {
         const int i = cell.first + mesh.corner[corner][t], o = cell.first + mesh.corner[0][t];
-        return Vec<3>(surfaces.velocity[0][i] - surfaces.velocity[0][o], surfaces.velocity[1][i] - surfaces.velocity[1][o],
+        return Vec<3>(surfaces.velocity[0][i] - surfaces.velocity[0][o],
+                      surfaces.velocity[1][i] - surfaces.velocity[1][o],
                       surfaces.velocity[2][i] - surfaces.velocity[2][o]);
       };
       const Vec<3> one = along(surface.side[0], t), two = along(surface.side[1], t);

@@ -18,10 +18,9 @@ namespace rouleau::core {
 ///     X = 2 m (D - tr D g/2) + k tr D g
 ///
 /// (Evans and Hochmuth, Biophys. J. 16, 1976, a Newtonian surface). Its forces on the nodes, of any stress, have
-/// neither sum nor torque. They change v within the step, so that explicit steps fail from m near 1 lattice unit on.
-/// The stress T that acts is therefore that of a dashpot X = 2 m D ... behind a spring as stiff as an explicit step bears
-/// with ease, of the modulus G = (m + k)/L; an inerter beside the dashpot, of L steps times its viscosity, lets T come
-/// up to X without a lag:
+/// neither sum nor torque. They change v within the step, so that explicit steps fail from m near 6 lattice units on.
+/// The stress T that acts is therefore that of a dashpot behind a spring which an explicit step bears with ease, of the
+/// modulus G = (m + k)/L. An inerter beside the dashpot, L steps times its viscosity, lets T come up to X without a lag:
 ///
 ///     (T' - T) L = X - W',   (W' - W) L = T' - W',   W the stress of the dashpot,
 ///
@@ -58,8 +57,8 @@ class SurfaceViscosity {
   std::array<std::size_t, 12> stress_;  // in Surfaces::state: what Room::stress has, of the first triangles and of more
 };
 
-/// The modulus G of a membrane in a fluid of this kinematic viscosity: a tenth of the stretching stiffness that explicit
-/// steps bear, or a little more (docs: results, membrane viscosity). Lattice units.
+/// The modulus G of a membrane in a fluid of this kinematic viscosity: a tenth of the stretching stiffness that
+/// explicit steps bear, or a little more (docs: results, membrane viscosity). Lattice units.
 double viscous_modulus(double viscosity, const KernelResponse& response);
 
 }  // namespace rouleau::core
