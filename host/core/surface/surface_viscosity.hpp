@@ -20,7 +20,7 @@ namespace rouleau::core {
 /// (Evans and Hochmuth, Biophys. J. 16, 1976, a Newtonian surface). Its forces on the nodes, of any stress, have
 /// neither sum nor torque. They change v within the step, so that explicit steps fail from m near 6 lattice units on.
 /// The stress T that acts is therefore that of a dashpot behind a spring which an explicit step bears with ease, of the
-/// modulus G = (m + k)/L. An inerter beside the dashpot, L steps times its viscosity, lets T come up to X without a lag:
+/// modulus G = (m + k)/L. An inerter beside the dashpot, L steps times its viscosity, takes the lag of T away:
 ///
 ///     (T' - T) L = X - W',   (W' - W) L = T' - W',   W the stress of the dashpot,
 ///
