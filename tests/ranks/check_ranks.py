@@ -141,6 +141,13 @@ class Same_bytes(Case):
                  "--set", '/output/fields={"seconds": "5e-4 s", "quantities": ["velocity"]}']
         self.assert_same([*map(str, scene)], [(2, 2), (3, 1)])
 
+    def test_of_a_cell_that_sinks_while_it_is_pulled(self):
+        scene = [SOURCE / "scenes" / "tweezers-3d.json", "--set", '/stages/0/duration="0.2 ms"',
+                 "--set", '/stages/0/forces/0/ramp="0.1 ms"', "--set", '/stages/0/forces/1/ramp="0.2 ms"',
+                 "--set", '/stages/1/duration="0.1 ms"', "--set", '/cell_types/rbc/interior_density="1.1 g/cm3"',
+                 "--set", '/fluid/gravity=["0 m/s2", "0 m/s2", "-9.81 m/s2"]', "--set", '/output/cells={"seconds": "5e-5 s"}']
+        self.assert_same([*map(str, scene)], [(3, 1), (2, 2)])
+
     def test_of_a_driven_channel_over_borders_in_single_precision(self):
         scene = [SOURCE / "tests" / "resume" / "scenes" / "driven.json", "--set", '/numerics/precision="f32"',
                  "--max-steps", "150"]
