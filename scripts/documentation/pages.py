@@ -15,6 +15,7 @@ CHAPTERS = {
     "Logs": ["docs/results/studies-3d-2026-11.md", "docs/results/faults-2026-11.md", "docs/results/speed-2026-11.md",
              "docs/results/tests-2026-11.md", "docs/results/means-2026-11.md", "docs/results/build-2026-11.md", "docs/results/plan-constants.md",
              "docs/results/newcomer-2026-11.md", "docs/results/membrane-viscosity-2026-11.md",
+             "docs/results/forces-2026-11.md",
              "docs/results/packages-2026-11.md"],
 }
 PAGES = [page for pages in CHAPTERS.values() for page in pages]

@@ -24,7 +24,7 @@ SCENE = {
     "cell_types": {
         "red": {"shape": {"biconcave": {"radius": "2 um"}}, "segments": 40, "membrane": [{"model": "hooke", "parameters": {"stretching_modulus": 1e-5}}]},
         "round": {"shape": {"circle": {"radius": "1 um"}}, "segments": 24, "membrane": []},
-        "oval": {"shape": {"ellipse": {"semi_axes": ["1 um", "0.9 um"]}}, "segments": 24, "membrane": []},
+        "oval": {"shape": {"ellipse": {"semi_axes": ["1 um", "0.9 um"]}}, "segments": 24, "interior_density": "1.1 g/cm3", "membrane": []},
     },
     "cells": [
         {"type": "red", "at": ["5 um", "8 um"]},
@@ -45,6 +45,7 @@ SCENE = {
 OTHER = {
     "/domain/x": None,  # there is one word only
     "/fluid/inertia": True, "/fluid/collision": {"model": "bgk"}, "/fluid/body_force": ["10 N/m3", "0 N/m3"],
+    "/fluid/gravity": ["0 m/s2", "-9.81 m/s2"],
     "/numerics/tau": 0.9, "/numerics/density_factor": 2000, "/numerics/kernel": "roma3", "/numerics/slip_correction": True,
     "/numerics/area_correction": True, "/numerics/precision": "f32", "/numerics/coupling": "semi-implicit",
     "/cell_types/round/shape/circle/prestretch": 1.1, "/cells/0/angle": 1, "/cells/1/row/axis": "y", "/cells/1/row/angle": 1,
