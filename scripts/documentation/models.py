@@ -73,7 +73,7 @@ def section(manifest, path, program):
     text += f"\n- works in {' and '.join(map(str, dimensions_of(manifest, program)))} dimensions\n"
     text += f"- needs {names(manifest['needs'])}\n- gives {names(manifest['gives'])}\n"
     if "in_3d" in manifest:
-        text += f"- in three dimensions needs {names(manifest['in_3d']['needs'])}\n"
+        text += f"- in three dimensions needs {names(manifest['in_3d']['needs']) or 'nothing'}\n"
         text += f"- in three dimensions gives {names(manifest['in_3d']['gives'])}\n"
     if claims(manifest):
         text += f"- claims to be {claims(manifest)}\n"

@@ -57,8 +57,9 @@ double resistance_to_shear(const Subject& subject, const Trial& trial) {
   return trial.setting.units.to_si(2 * stress, plugin::facts_of(plugin::Role::shear_modulus).dimension);
 }
 
-/// Of a triangle at rest, in SI.
+/// The surface viscosity of a triangle at rest, or of a segment, in SI.
 double resistance_to_rate(const Subject& subject, const Trial& trial, plugin::Role role) {
+  if (!subject.manifest().gives_output("shear_viscosity")) return stiffness(subject, trial, to_rate, role);
   Random random = subject.random();
   const Values now = compute(subject, trial.instance, at_rest(subject, trial, 1, random), look());
   return trial.setting.units.to_si(now.at("shear_viscosity")[0], plugin::facts_of(role).dimension);
@@ -96,12 +97,17 @@ double found(const Subject& subject, const Trial& trial, std::size_t parameter, 
   const double said = trial.parameters[parameter];
   const units::LatticeUnits& units = trial.setting.units;
   const auto cutoff = [&] { return trial.instance.interaction().cutoff(trial.instance.self()); };
+  const auto doubled = [&] {
+    auto parameters = trial.parameters;
+    parameters[parameter] *= 2;
+    return Trial{subject.make(parameters, trial.setting), parameters, trial.setting, trial.words};
+  };
   switch (role) {
     case plugin::Role::stretching_modulus:
       return stiffness(subject, trial, to_stretch, role);
     case plugin::Role::membrane_viscosity:
-      return subject.manifest().gives_output("shear_viscosity") ? resistance_to_rate(subject, trial, role)
-                                                                : stiffness(subject, trial, to_rate, role);
+      // What else resists the rate stays.
+      return resistance_to_rate(subject, doubled(), role) - resistance_to_rate(subject, trial, role);
     case plugin::Role::bending_modulus:
       return stiffness(subject, trial, to_curvature, role);
     case plugin::Role::cutoff:
@@ -115,14 +121,11 @@ double found(const Subject& subject, const Trial& trial, std::size_t parameter, 
     }
     case plugin::Role::shear_modulus: {
       if (said == 0) return std::nan("");
-      auto parameters = trial.parameters;
-      parameters[parameter] *= 2;
-      const Trial doubled{subject.make(parameters, trial.setting), parameters, trial.setting, trial.words};
       if (gives_stress(subject.manifest())) {  // what else resists shear stays
-        return resistance_to_shear(subject, doubled) - resistance_to_shear(subject, trial);
+        return resistance_to_shear(subject, doubled()) - resistance_to_shear(subject, trial);
       }
       // In a plane nothing shears a membrane, but what resists shear resists stretch, the more the more of it there is.
-      const double more = stiffness(subject, doubled, to_stretch, role);
+      const double more = stiffness(subject, doubled(), to_stretch, role);
       return more > (1 + tolerance) * stiffness(subject, trial, to_stretch, role) ? said : 0;
     }
     case plugin::Role::area_modulus:
