@@ -163,9 +163,8 @@ struct Sphere {
 };  ///< in three dimensions, as a circle
 struct Ellipsoid {
   Vector semi_axes;
-  bool even =
-      false;  ///< an oblate spheroid about y with nodes at equal distances along meridians, as the disc has them
-};            ///< m, along x, y and z at angle 0
+  bool even = false;  ///< a spheroid with nodes at equal distances along meridians, as the disc has them
+};                    ///< m, along x, y and z at angle 0
 struct MeshFile {
   std::filesystem::path file;
   double unit;

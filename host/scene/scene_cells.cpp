@@ -75,9 +75,9 @@ Ellipsoid read_spheroid(const SceneFields& fields, const std::string& pointer, c
                   "a spheroid of this area has between " + number(1e18 * flattest * of_sphere, 4) + " and " +
                       number(1e18 * of_sphere, 4) + " um3, and its volume is " + number(1e18 * content.volume, 4) +
                       " um3\ntake another volume, or another area");
-  const bool prolate = fields.value_or(pointer + "/kind", std::string()) == "prolate";
-  const core::Vec<3> axes = core::spheroid_axes(content, prolate);
-  return {Vector{axes.x(), axes.y(), axes.z()}, !prolate};
+  const core::Vec<3> axes =
+      core::spheroid_axes(content, fields.value_or(pointer + "/kind", std::string()) == "prolate");
+  return {Vector{axes.x(), axes.y(), axes.z()}, true};
 }
 
 /// Of a sphere or a circle.

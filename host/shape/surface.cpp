@@ -32,10 +32,8 @@ TriangleSurface surface_of(const scene::Shape& shape, std::size_t triangles) {
   if (const auto* mesh = std::get_if<scene::MeshFile>(&shape)) return mesh_surface(*mesh);
   const int n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(triangles) / 20.0)));
   if (const auto* disc = std::get_if<scene::Biconcave>(&shape)) return core::biconcave_disc(n, disc->radius);
-  if (const auto* solid = std::get_if<scene::Ellipsoid>(&shape)) {
-    const scene::Vector& axes = solid->semi_axes;
-    return solid->even ? core::even_spheroid(n, axes.x(), axes.y()) : core::ellipsoid(n, axes.in<3>());
-  }
+  if (const auto* solid = std::get_if<scene::Ellipsoid>(&shape))
+    return (solid->even ? core::even_spheroid : core::ellipsoid)(n, solid->semi_axes.in<3>());
   return core::ellipsoid(n, Vec<3>::Constant(std::get<scene::Sphere>(shape).radius));
 }
 

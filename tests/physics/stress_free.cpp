@@ -157,7 +157,7 @@ class RelaxedCell {
   [[nodiscard]] core::TriangleSurface spheroid(int n, double reduced) const {
     const double of_sphere = std::pow(disc_.area, 1.5) / (6 * std::sqrt(std::numbers::pi));
     const Vec<3> axes = core::spheroid_axes({disc_.area, reduced * of_sphere}, false);
-    return scaled_to(disc_.area, core::even_spheroid(n, axes.x(), axes.y()));
+    return scaled_to(disc_.area, core::even_spheroid(n, axes));
   }
   static MembraneLaws laws(const RedCell& of) {
     // Ka = mu (1 + 2 C)

@@ -119,10 +119,10 @@ Vec<3> spheroid_axes(const SurfaceContent& content, bool prolate) {
 
 namespace {
 
-/// A curve from the y axis to the y axis, by its parameter from 0 to pi, turned about it. Nodes lie at equal distances
-/// along meridians.
+/// A curve from an axis to that axis, 0: x, 1: y, by its parameter from 0 to pi, turned about it. Nodes lie at equal
+/// distances along meridians.
 template <class Curve>
-TriangleSurface turned(int n, double scale_of_all, const Curve& point) {
+TriangleSurface turned(int axis, int n, double scale_of_all, const Curve& point) {
   constexpr int steps = 4096;
   // Length along the profile from the axis, at equal steps of the parameter.
   std::vector<double> length(steps + 1);
@@ -133,14 +133,16 @@ TriangleSurface turned(int n, double scale_of_all, const Curve& point) {
   }
   TriangleSurface made = unit_sphere(n);
   for (Vec<3>& node : made.nodes) {
-    const double from_axis = std::hypot(node.x(), node.z());
-    const double wanted = std::atan2(from_axis, node.y()) / std::numbers::pi * length[steps];
+    const double from_axis = std::hypot(node[1 - axis], node.z());
+    const double wanted = std::atan2(from_axis, node[axis]) / std::numbers::pi * length[steps];
     const auto above =
         std::clamp<std::ptrdiff_t>(std::upper_bound(length.begin(), length.end(), wanted) - length.begin(), 1, steps);
     const double share = (wanted - length[above - 1]) / (length[above] - length[above - 1]);
     const auto [r, y] = point(std::numbers::pi * (static_cast<double>(above - 1) + share) / steps);
     const double scale = from_axis > 0 ? r / from_axis : 0;
-    node = scale_of_all * Vec<3>(scale * node.x(), y, scale * node.z());
+    node *= scale;
+    node[axis] = y;
+    node *= scale_of_all;
   }
   return made;
 }
@@ -148,15 +150,16 @@ TriangleSurface turned(int n, double scale_of_all, const Curve& point) {
 }  // namespace
 
 TriangleSurface biconcave_disc(int n, double radius) {
-  return turned(n, radius, [](double from_pole) -> std::pair<double, double> {
+  return turned(1, n, radius, [](double from_pole) -> std::pair<double, double> {
     const Eigen::Vector2d place = biconcave_curve(1, std::numbers::pi / 2 - from_pole).place;
     return {place.x(), place.y()};
   });
 }
 
-TriangleSurface even_spheroid(int n, double across, double along) {
-  return turned(n, across, [=](double from_pole) -> std::pair<double, double> {
-    return {std::sin(from_pole), along / across * std::cos(from_pole)};
+TriangleSurface even_spheroid(int n, const Vec<3>& semi_axes) {
+  const int axis = semi_axes.y() == semi_axes.z() ? 0 : 1;
+  return turned(axis, n, semi_axes.z(), [&](double from_pole) -> std::pair<double, double> {
+    return {std::sin(from_pole), semi_axes[axis] / semi_axes.z() * std::cos(from_pole)};
   });
 }
 

@@ -48,7 +48,7 @@ CurvePoint biconcave_curve(double radius, double angle);
 
 /// That curve turned about y. Nodes lie at equal distances along meridians.
 TriangleSurface biconcave_disc(int n, double radius);
-/// A spheroid with these semi-axes across y and along it, its nodes likewise.
-TriangleSurface even_spheroid(int n, double across, double along);
+/// A spheroid about x, where the others of its semi-axes are equal, or about y, its nodes likewise.
+TriangleSurface even_spheroid(int n, const Vec<3>& semi_axes);
 
 }  // namespace rouleau::core
