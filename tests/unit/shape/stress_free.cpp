@@ -33,7 +33,9 @@ class Written {
           "cells": [{"type": "rbc", "at": ["8 um", "8 um", "8 um"]}],
           "stages": [{"name": "rest", "duration": "1 ms"}]})")) {}
 
-  [[nodiscard]] scene::Scene read() const { return plan::read_scene(file_, {}); }
+  [[nodiscard]] scene::Scene read(const std::vector<std::string>& changes = {}) const {
+    return plan::read_scene(file_, changes);
+  }
   [[nodiscard]] plan::PlanReport report() const {
     static const plugin::Catalog catalog({ROULEAU_PLUGINS});
     const scene::Scene scene = read();
@@ -197,4 +199,20 @@ TEST_CASE("a plan warns of stress-free shapes with which a red cell may become a
   CHECK_FALSE(warns(R"({"spheroid": {"reduced_volume": 0.95}})"));
   CHECK_FALSE(warns(R"({"spheroid": {"reduced_volume": 0.7}})"));
   CHECK_FALSE(warns(R"({"biconcave": {"radius": "3.91 um"}})"));
+}
+
+TEST_CASE("cells at random that begin as spheroids fill a tube that is narrower than the disc in which they rest") {
+  constexpr double spacing = 0.25e-6, tube = 3.3e-6;
+  const scene::Scene scene =
+      Written(R"("shape": {"spheroid": {"kind": "prolate"}}, "triangles": 720,
+                 "stress_free": {"biconcave": {"radius": "3.91 um"}})")
+          .read(
+              {R"(/domain={"size": ["60 um", "8 um", "8 um"], "nodes": [240, 32, 32], "walls": {"tube": {"radius": "3.3 um"}}})",
+               R"(/cells=[{"type": "rbc", "random": {"count": 2, "seed": 1, "gap": "0.3 um"}}])"});
+  const core::Surfaces cells = plan::make_cells<3>(scene);
+  REQUIRE(cells.cell_count() == 2);
+  for (int i = 0; i < cells.node_count(); ++i)
+    CHECK(spacing * std::hypot(cells.position[1][i] - 15.5, cells.position[2][i] - 15.5) < tube - 0.29e-6);
+  // Nodes lie evenly: an affine image of the sphere would stretch the disc's edges by up to 2.6.
+  CHECK(core::first_stretch(*cells.types[0]).most < 2);
 }
