@@ -1,5 +1,7 @@
 """The pages of the documentation in reading order: what the site shows and the tests of tests/docs go through."""
+import pathlib
 
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 CHAPTERS = {
     "Begin": ["README.md", "docs/install.md", "docs/first-run.md", "docs/tutorial.md", "docs/worked-scenes.md",
               "docs/gallery.md", "docs/faq.md", "docs/glossary.md"],
@@ -12,10 +14,6 @@ CHAPTERS = {
                           "docs/performance.md"],
     "Extend": ["sdk/README.md", "docs/conformance.md", "docs/compatibility.md", "docs/trust.md", "docs/architecture.md",
                "docs/testing.md", "CONTRIBUTING.md"],
-    "Logs": ["docs/results/studies-3d-2026-11.md", "docs/results/faults-2026-11.md", "docs/results/speed-2026-11.md",
-             "docs/results/tests-2026-11.md", "docs/results/means-2026-11.md", "docs/results/build-2026-11.md", "docs/results/plan-constants.md",
-             "docs/results/newcomer-2026-11.md", "docs/results/membrane-viscosity-2026-11.md",
-             "docs/results/forces-2026-11.md",
-             "docs/results/packages-2026-11.md"],
+    "Logs": sorted(str(page.relative_to(ROOT)) for page in (ROOT / "docs/results").glob("*.md")),
 }
 PAGES = [page for pages in CHAPTERS.values() for page in pages]
