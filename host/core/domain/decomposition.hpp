@@ -158,7 +158,7 @@ class Decomposition {
   }
   /// What a cut costs both sides, as a step of so many nodes does: numbers beside each other in memory are sent at
   /// little cost, those of a border across rows lie alone, and more so where blocks are larger than a cache (measured:
-  /// docs/scaling.md); and points near it are known twice.
+  /// docs/results/scaling-2026-11.md); and points near it are known twice.
   static double border_cost(const Box<D>& box, int axis, int at, const std::vector<long>& points, double point_cost,
                             int parts) {
     constexpr int near = 15;          // spacings: half a cell, and what it reaches

@@ -23,7 +23,7 @@ namespace rouleau::plan {
 
 namespace {
 
-/// Bytes that a rank takes besides its block: measured (docs/scaling.md).
+/// Bytes that a rank takes besides its block: measured (docs/results/scaling-2026-11.md).
 namespace memory {
 constexpr double of_process = 30e6;   ///< the program, its libraries and MPI
 constexpr double of_each_cell = 600;  ///< of the scene: as it was read, where it begins, what lists of it are empty

@@ -10,7 +10,7 @@
 
 namespace rouleau::plan {
 
-/// What the cut costs, s: measured by one rank that takes its steps alone (docs/scaling.md).
+/// What the cut costs, s: measured by one rank that takes its steps alone (docs/results/scaling-2026-11.md).
 struct CostOfSharing {
   double number_s;  ///< that goes to a neighbour: packing it, and unpacking one
   double ghost_s;   ///< a node of a ghost: unpacking it, finding where it touches the lattice, spreading

@@ -9,7 +9,7 @@
 
 namespace rouleau::plan {
 
-/// What is reckoned with: by default what is usual between the machines of a cluster; docs/scaling.md.
+/// What is reckoned with: by default what is usual between the machines of a cluster; docs/results/scaling-2026-11.md.
 struct Network {
   double latency_s = 2e-6;  ///< of a message that somebody waits for; where ranks take turns on processors, of a turn
   double bandwidth = 10e9;  ///< bytes/s that a rank sends and, at the same time, takes
