@@ -43,3 +43,98 @@ def draw(panels, path):
     figure.subplots_adjust(0, 0.06, 1, 1, 0, 0)
     figure.savefig(path, dpi=110)
     pyplot.close(figure)
+
+
+GROUND, PLATE, INK = "#fbf3e6", "#8d99a6", "#333333"
+REDS = ["#c23b30", "#d9604c"]
+
+
+def turned(points, elevation):
+    """Places seen by an eye that looks along z from above: to the right, upwards, and towards the eye."""
+    sine, cosine = numpy.sin(numpy.radians(elevation)), numpy.cos(numpy.radians(elevation))
+    x, y, z = points.T
+    return numpy.column_stack([x, y * cosine + z * -sine, y * sine + z * cosine])
+
+
+def smooth(points, triangles):
+    """Triangles cut into four, and a normal for each: the shade of a coarse mesh without its facets."""
+    corners = points[triangles]
+    flat = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = numpy.zeros_like(points)
+    for corner in range(3):
+        numpy.add.at(normals, triangles[:, corner], flat)
+    normals = normals[triangles]
+
+    def cut(values):
+        a, b, c = values[:, 0], values[:, 1], values[:, 2]
+        ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+        return numpy.concatenate([numpy.stack(part, axis=1) for part in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+
+    corners = cut(cut(corners))
+    middle = cut(cut(normals)).mean(axis=1)
+    return corners, middle / numpy.linalg.norm(middle, axis=1, keepdims=True)
+
+
+def close_up(axes, frame, elevation=14, box_um=None):
+    """The cells of a frame, near, with a light from above on the left; with a box their middles are brought back into it."""
+    from matplotlib.collections import PolyCollection
+
+    light = numpy.array([-0.35, 0.75, 0.56])
+    shapes, tones, depths = [], [], []
+    for number, cell in enumerate(frame.cells):
+        place_um = 1e6 * numpy.asarray(cell.outline)
+        if box_um is not None:
+            place_um -= numpy.floor(place_um.mean(axis=0) / box_um) * box_um
+        corners, normals = smooth(turned(place_um, elevation), numpy.asarray(cell.triangles))
+        outwards = numpy.sum(normals * (corners.mean(axis=1) - corners.mean(axis=(0, 1))))
+        normals = normals * numpy.sign(outwards)  # whichever way round the mesh has its triangles
+        seen = normals[:, 2] > -0.05
+        bright = 0.38 + 0.62 * numpy.clip(normals @ light, 0, 1)
+        shine = numpy.clip(normals @ (light + [0, 0, 1]) / numpy.linalg.norm(light + [0, 0, 1]), 0, 1) ** 24
+        colours = numpy.outer(bright, matplotlib.colors.to_rgb(REDS[number % 2])) + 0.25 * shine[:, None]
+        shapes.append(corners[seen, :, :2])
+        tones.append(numpy.clip(colours[seen], 0, 1))
+        depths.append(corners[seen, :, 2].mean(axis=1))
+    order = numpy.argsort(numpy.concatenate(depths))
+    tones = numpy.concatenate(tones)[order]
+    axes.add_collection(PolyCollection(numpy.concatenate(shapes)[order], facecolors=tones, edgecolors=tones, linewidths=0.3))
+
+
+def sheared(frame, path, height_um, left_um, right_um, depth_um, pixels=900, elevation=14):
+    """One picture of a film: cells between two walls that move, with a bar of 5 um and the strain."""
+    lower, upper = (turned(numpy.array([[0, y, depth_um / 2]]), elevation)[0, 1] for y in (0, height_um))
+    bottom, top = lower - 1.6, upper + 1.6
+    size = (pixels / 100, pixels / 100 * (top - bottom) / (right_um - left_um))
+    figure = pyplot.figure(figsize=size, facecolor=GROUND)
+    axes = figure.add_axes([0, 0, 1, 1])
+    axes.set(xlim=(left_um, right_um), ylim=(bottom, top))
+    axes.set_axis_off()
+    width = right_um - left_um
+    for y, below, way in ((upper, 0, 1), (lower, -0.6, -1)):
+        axes.add_patch(pyplot.Rectangle((left_um, y + below), width, 0.6, color=PLATE, lw=0))
+        for part in (0.2, 0.5, 0.8):
+            x = left_um + part * width
+            axes.annotate("", (x + 2 * way, y - 1.1 * way), (x - 2 * way, y - 1.1 * way),
+                          arrowprops={"arrowstyle": "-|>", "color": PLATE, "lw": 2.2, "mutation_scale": 16})
+    close_up(axes, frame, elevation)
+    x = left_um + 1
+    axes.plot([x, x + 5], [lower + 2.2] * 2, color=INK, lw=3, solid_capstyle="butt")
+    axes.text(x + 2.5, lower + 2.6, "5 um", ha="center", va="bottom", color=INK, fontsize=11)
+    axes.text(right_um - 1, lower + 2.2, f"strain {frame.strain:.0f}", ha="right", va="bottom", color=INK, fontsize=11)
+    figure.savefig(path, dpi=100, facecolor=GROUND)
+    pyplot.close(figure)
+
+
+def suspension(frame, path, box_um, elevation=22):
+    """All cells of a box, brought back into it, as large as they can be in a picture of 600 by 400 pixels."""
+    figure = pyplot.figure(figsize=(6, 4), facecolor=GROUND)
+    axes = figure.add_axes([0, 0, 1, 1])
+    axes.set_axis_off()
+    close_up(axes, frame, elevation, numpy.asarray(box_um))
+    seen = numpy.concatenate([shape.vertices for shape in axes.collections[0].get_paths()])
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    half = 0.53 * max((high - low) / [6, 4])
+    for name, middle, part in zip("xy", (low + high) / 2, (6, 4)):
+        axes.set(**{f"{name}lim": (middle - part * half, middle + part * half)})
+    figure.savefig(path, dpi=100, facecolor=GROUND)
+    pyplot.close(figure)

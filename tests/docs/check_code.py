@@ -277,8 +277,7 @@ def fuzz_target(test, block):
 
 # page, how the block begins, what is done with it.
 BLOCKS = [
-    ("README.md", "#include <rouleau/interaction.hpp>", model(lambda: shipped_manifest("morse"))),
-    ("README.md", "find_package(Rouleau REQUIRED COMPONENTS core)", "the same two lines as a project: tests/sdk/check_core.py builds it"),
+    ("docs/library.md", "find_package(Rouleau REQUIRED COMPONENTS core)", "the same two lines as a project: tests/sdk/check_core.py builds it"),
     ("docs/models.md", '{"model": "lim"', law_in_space),
     ("docs/models.md", '{"model": "viscous"', part_of_scene("membrane")),
     ("docs/models.md", '{"model": "standard-linear-solid"', part_of_scene("membrane")),
