@@ -18,6 +18,7 @@ sys.path.insert(0, str(SOURCE / "scripts/documentation"))
 from pages import PAGES  # noqa: E402
 
 WORDS, LINE, CELL, NUMBERS = 35, 160, 160, 5  # at most: words and numbers of a sentence, characters of a line and of a cell
+ENTRY = 25  # words of an entry of the changelog
 NOT_YET = {
     "docs/scene.md", "docs/walls.md", "docs/models.md", "docs/output.md", "docs/python.md",
     "docs/simulation.md", "docs/rheology.md", "docs/study-quantities.md", "docs/reference/scene.md",
@@ -97,6 +98,12 @@ class Words(unittest.TestCase):
             found = [f"{page}:{line}: {rule}: {what}" for line, rule, what in faults((SOURCE / page).read_text())]
             self.assertEqual(found, [], f"{page}: at most {WORDS} words and {NUMBERS} numbers a sentence, {LINE} characters a line, "
                                         f"{CELL} a cell. What was measured belongs into {RESULTS}")
+
+    def test_entries_of_the_changelog_are_short(self):
+        unreleased = re.search(r"^## \[Unreleased\]\n(.*?)(?=^## \[)", (SOURCE / "CHANGELOG.md").read_text(), re.MULTILINE | re.DOTALL)
+        entries = re.findall(r"^- (.*(?:\n  .*)*)", unreleased[1], re.MULTILINE) if unreleased else []
+        long = [entry for entry in entries if len(entry.split()) > ENTRY]
+        self.assertEqual(long, [], f"at most {ENTRY} words; what was measured belongs into {RESULTS}")
 
     def test_the_list_of_older_pages_only_shrinks(self):
         self.assertEqual(NOT_YET - set(PAGES), set(), "no pages")
