@@ -313,6 +313,7 @@ BLOCKS = [
     ("docs/three-dimensions.md", '"domain": {', domain_of_a_tube),
     ("docs/three-dimensions.md", '"cells": [', cells_in_space),
     ("docs/three-dimensions.md", '"cell_types": {', "of scenes/capsule-3d.json, which tests/physics runs"),
+    ("docs/first-run-3d.md", "import rouleau", lambda test, block: ast.parse(block.text)),
     ("docs/first-run.md", "import rouleau", lambda test, block: ast.parse(block.text)),
     ("docs/output-frames.md", "import h5py", lambda test, block: ast.parse(block.text)),
     ("docs/python.md", "import rouleau\nrun", "run by tests/python/check_notebooks.py, block after block"),
