@@ -33,7 +33,6 @@ NOT_YET = {
     "docs/paper.md",
     "sdk/README.md",
     "docs/conformance.md",
-    "docs/compatibility.md",
     "docs/architecture.md",
     "docs/testing.md",
 }
