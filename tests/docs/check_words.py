@@ -23,18 +23,14 @@ NOT_YET = {
     "docs/scene.md",
     "docs/walls.md",
     "docs/models.md",
-    "docs/output.md",
     "docs/python.md",
     "docs/simulation.md",
     "docs/reference/scene.md",
     "docs/reference/models.md",
     "docs/physics.md",
-    "docs/accuracy.md",
     "docs/paper.md",
     "sdk/README.md",
-    "docs/conformance.md",
     "docs/architecture.md",
-    "docs/testing.md",
 }
 RESULTS = "docs/results/"
 CODE = re.compile(r"^```.*?^```$|(?:(?<=\n\n)|\A)(?: {4}[^\n]*(?:\n|\Z)|[ \t]*\n(?= {4}))+", re.MULTILINE | re.DOTALL)
