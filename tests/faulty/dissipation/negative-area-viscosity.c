@@ -1,8 +1,8 @@
 // Fault: in three dimensions a surface that is blown up gives energy.
-#include "spring.h"
+#include "dashpot.h"
 
 static void compute(const void* self, const rouleau_membrane_block* block) {
-  const double viscosity = ((const spring*)self)->modulus;
+  const double viscosity = ((const dashpot*)self)->viscosity;
   if (block->struct_size < sizeof *block || (block->shear_viscosity == NULL && block->area_viscosity == NULL)) {
     honest_compute(self, block);
     return;
