@@ -1,6 +1,7 @@
 #include "surface_viscosity.hpp"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "core/domain/run_loop.hpp"
@@ -50,14 +51,15 @@ struct StrainTriangles {
   }
 };
 
-/// Calls `exchange` with each variable of the state, the number of the component that it has, and which triangles: in
-/// one half of the variables places of the nodes hold the first ones, in the other the others, of which there are fewer
-/// than nodes.
-template <class Variables, class Exchange>
-void for_each_variable(const Variables& variables, int triangles, int nodes, const Exchange& exchange) {
+constexpr std::size_t components = 6;
+
+/// Calls `exchange` with each variable of the state, the number of the component that it has, and which triangles: there
+/// are about twice as many as places, those of the nodes, so that more than one variable has a component.
+template <class Exchange>
+void for_each_variable(const std::vector<std::size_t>& variables, int triangles, int nodes, const Exchange& exchange) {
   for (std::size_t k = 0; k < variables.size(); ++k) {
-    const bool more = k >= variables.size() / 2;
-    exchange(variables[k], k % (variables.size() / 2), more ? nodes : 0, more ? triangles - nodes : nodes);
+    const int first = nodes * static_cast<int>(k / components);
+    exchange(variables[k], k % components, first, std::min(nodes, triangles - first));
   }
 }
 
@@ -70,14 +72,16 @@ void SurfaceViscosity::Room::resize(std::size_t triangles) {
 
 SurfaceViscosity::SurfaceViscosity(Surfaces& surfaces, int type, double modulus, double tension_unit)
     : modulus_(modulus) {
-  std::size_t k = 0;
-  for (const char* more : {"", "_more"}) {
-    for (const char* of : {"viscous_stress", "dashpot_stress"}) {
-      for (const char* component : {"_11", "_12", "_22"}) {
-        // An area times a stress, over squares of sides, has the unit of a tension.
-        stress_[k++] = keep_state(surfaces.state, {type, -1, "", std::string(of) + component + more, tension_unit, {}},
-                                  0, surfaces.position[0].size());
-      }
+  constexpr std::array names{"viscous_stress_11", "viscous_stress_12", "viscous_stress_22",
+                             "dashpot_stress_11", "dashpot_stress_12", "dashpot_stress_22"};
+  const Mesh& mesh = surfaces.types[type]->mesh;
+  for (int first = 0; first < mesh.triangle_count(); first += mesh.node_count()) {
+    for (const std::string name : names) {
+      // An area times a stress, over squares of sides, has the unit of a tension.
+      stress_.push_back(keep_state(
+          surfaces.state,
+          {type, -1, "", first == 0 ? name : name + "_" + std::to_string(first / mesh.node_count()), tension_unit, {}},
+          0, surfaces.position[0].size()));
     }
   }
 }

@@ -1,7 +1,6 @@
 // What surfaces resist with to the rate at which they are strained, by a step that is stable at any viscosity.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "core/membrane/node_mobility.hpp"
@@ -54,7 +53,7 @@ class SurfaceViscosity {
 
  private:
   double modulus_;
-  std::array<std::size_t, 12> stress_;  // in Surfaces::state: what Room::stress has, of the first triangles and of more
+  std::vector<std::size_t> stress_;  // in Surfaces::state: what Room::stress has
 };
 
 /// The modulus G of a membrane in a fluid of this kinematic viscosity: a tenth of the stretching stiffness that
