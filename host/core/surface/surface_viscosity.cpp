@@ -53,8 +53,8 @@ struct StrainTriangles {
 
 constexpr std::size_t components = 6;
 
-/// Calls `exchange` with each variable of the state, the number of the component that it has, and which triangles: there
-/// are about twice as many as places, those of the nodes, so that more than one variable has a component.
+/// Calls `exchange` with each variable of the state, the number of the component that it has, and which triangles:
+/// there are about twice as many as places, those of the nodes, so that more than one variable has a component.
 template <class Exchange>
 void for_each_variable(const std::vector<std::size_t>& variables, int triangles, int nodes, const Exchange& exchange) {
   for (std::size_t k = 0; k < variables.size(); ++k) {
