@@ -63,6 +63,13 @@ Value members_of_aggregate(const Row& row) {
 // Name, unit, doc, value and, where a chart draws it, its title and the name of the line.
 
 /// What every table begins with.
+/// The column with a mark of those that say when it is there, or that it has means.
+template <auto mark>
+constexpr Observable marked(Observable column) {
+  column.*mark = true;
+  return column;
+}
+
 constexpr Observable instant_columns[] = {
     {"step", "", "number of the step, over all stages", output<&Snapshot::step>},
     {"time", "s", "simulated time since the first stage began", output<&Snapshot::time>},
@@ -116,12 +123,10 @@ constexpr Observable aggregate_columns[] = {
     {"gap", "m", "smallest gap between the two", contact<&ContactSnapshot::gap>},
     {"contact_length", "m", "rest length of `cell_a`'s membrane that is nearer to `cell_b` than `aggregate_gap`",
      contact<&ContactSnapshot::contact_length>},
-    {.name = "image_z", .unit = "", .doc = "along z", .value = image<2>, .in_space = true},
-    {.name = "contact_area",
-     .unit = "m2",
-     .doc = "rest area of `cell_a`'s surface nearer to the other than the aggregate gap",
-     .value = contact<&ContactSnapshot::contact_area>,
-     .in_space = true},
+    marked<&Observable::in_space>({"image_z", "", "along z", image<2>}),
+    marked<&Observable::in_space>({"contact_area", "m2",
+                                   "rest area of `cell_a`'s surface nearer to the other than the aggregate gap",
+                                   contact<&ContactSnapshot::contact_area>}),
 };
 
 constexpr Observable series_columns[] = {
@@ -129,36 +134,28 @@ constexpr Observable series_columns[] = {
     {"stage_name", "", "its name", output<&Snapshot::stage_name>},
     {"aggregate_count", "", "number of aggregates; single cells included", output<&Snapshot::aggregate_count>,
      "Aggregates, single cells included"},
-    {.name = "rotation",
-     .unit = "rad",
-     .doc = "that of the largest aggregate in aggregates.csv (of equal ones the first); `nan` where it has none",
-     .value = [](const Row& row) -> Value { return largest_rotation(row.output); }},
-    {.name = "relative_viscosity",
-     .unit = "",
-     .doc = "in shear by the stress on the walls, in a driven flow by the flow rate; `nan` elsewhere",
-     .value = output<&Snapshot::relative_viscosity>,
-     .chart = "Relative viscosity",
-     .has_means = true},
+    {"rotation", "rad",
+     "that of the largest aggregate in aggregates.csv (of equal ones the first); `nan` where it has none",
+     [](const Row& row) -> Value { return largest_rotation(row.output); }},
+    marked<&Observable::has_means>(
+        {"relative_viscosity", "",
+         "in shear by the stress on the walls, in a driven flow by the flow rate; `nan` elsewhere",
+         output<&Snapshot::relative_viscosity>, "Relative viscosity"}),
     {"shear_rate", "1/s",
      "of the walls during the last step: speed of the upper less that of the lower, over the height; `nan` "
      "where they do not move",
      output<&Snapshot::shear_rate>},
-    {.name = "wall_stress_lower",
-     .unit = "Pa",
-     .doc = "mean shear stress on the lower wall along +x in the last step; `nan` without walls and before they act",
-     .value = output<&Snapshot::wall_stress_lower>,
-     .has_means = true},
-    {.name = "wall_stress_upper",
-     .unit = "Pa",
-     .doc = "likewise, on the upper wall",
-     .value = output<&Snapshot::wall_stress_upper>,
-     .has_means = true},
-    {.name = "pressure_gradient",
-     .unit = "Pa/m",
-     .doc = "force per volume along x that drives the fluid at this instant, beside `fluid.body_force`; `nan` "
-            "where the stage has none",
-     .value = output<&Snapshot::pressure_gradient>,
-     .has_means = true},
+    marked<&Observable::has_means>(
+        {"wall_stress_lower", "Pa",
+         "mean shear stress on the lower wall along +x in the last step; `nan` without walls and before they act",
+         output<&Snapshot::wall_stress_lower>}),
+    marked<&Observable::has_means>(
+        {"wall_stress_upper", "Pa", "likewise, on the upper wall", output<&Snapshot::wall_stress_upper>}),
+    marked<&Observable::has_means>(
+        {"pressure_gradient", "Pa/m",
+         "force per volume along x that drives the fluid at this instant, beside `fluid.body_force`; `nan` "
+         "where the stage has none",
+         output<&Snapshot::pressure_gradient>}),
     {"particle_stress", "Pa",
      "xy stress that the cells add: all forces on membranes, between cells too, and viscosity contrast, "
      "per area of the domain",
@@ -173,52 +170,34 @@ constexpr Observable series_columns[] = {
     {"area_leakage_max", "",
      "largest change of a cell's area or volume that `numerics.area_correction` put back; `nan` without it",
      output<&Snapshot::area_leakage_max>, "Largest area kept from leaking, relative"},
-    {.name = "flow_rate",
-     .unit = "m2/s",
-     .doc = "of a driven channel, per depth: integral of the velocity over the cross-section; `nan` elsewhere",
-     .value = output<&Snapshot::flow_rate>,
-     .has_means = true},
-    {.name = "mean_velocity",
-     .unit = "m/s",
-     .doc = "of a driven channel, along x: the flow rate over the cross-section; `nan` elsewhere",
-     .value = output<&Snapshot::mean_velocity>,
-     .has_means = true},
-    {.name = "cell_free_layer_lower",
-     .unit = "m",
-     .doc = "mean distance from the lower wall to the nearest membrane; `nan` without walls or cells",
-     .value = output<&Snapshot::cell_free_layer_lower>,
-     .chart = "Cell-free layer",
-     .line = "lower wall",
-     .has_means = true},
-    {.name = "cell_free_layer_upper",
-     .unit = "m",
-     .doc = "likewise, from the upper wall",
-     .value = output<&Snapshot::cell_free_layer_upper>,
-     .chart = "Cell-free layer",
-     .line = "upper wall",
-     .has_means = true},
-    {.name = "cell_free_layer_empty",
-     .unit = "",
-     .doc = "share of these columns or rays without a cell: above 0.05 the layers are no result; `nan` as they are",
-     .value = output<&Snapshot::cell_free_layer_empty>,
-     .has_means = true},
-    {.name = "discharge_hematocrit",
-     .unit = "",
-     .doc = "of a driven flow: flux of what the cells enclose over the flux of all; `nan` elsewhere and without cells",
-     .value = output<&Snapshot::discharge_hematocrit>,
-     .chart = "Discharge hematocrit",
-     .has_means = true},
-    {.name = "aggregate_size_number_mean",
-     .unit = "",
-     .doc = "cells over aggregates; a single cell is an aggregate of one",
-     .value = output<&Snapshot::aggregate_size_number_mean>,
-     .has_means = true},
-    {.name = "aggregate_size_weight_mean",
-     .unit = "",
-     .doc = "size of the aggregate a cell finds itself in, averaged over the cells: sum n^2 / sum n",
-     .value = output<&Snapshot::aggregate_size_weight_mean>,
-     .chart = "Aggregate size, mean over cells",
-     .has_means = true},
+    marked<&Observable::has_means>(
+        {"flow_rate", "m2/s",
+         "of a driven channel, per depth: integral of the velocity over the cross-section; `nan` elsewhere",
+         output<&Snapshot::flow_rate>}),
+    marked<&Observable::has_means>(
+        {"mean_velocity", "m/s", "of a driven channel, along x: the flow rate over the cross-section; `nan` elsewhere",
+         output<&Snapshot::mean_velocity>}),
+    marked<&Observable::has_means>(
+        {"cell_free_layer_lower", "m",
+         "mean distance from the lower wall to the nearest membrane; `nan` without walls or cells",
+         output<&Snapshot::cell_free_layer_lower>, "Cell-free layer", "lower wall"}),
+    marked<&Observable::has_means>({"cell_free_layer_upper", "m", "likewise, from the upper wall",
+                                    output<&Snapshot::cell_free_layer_upper>, "Cell-free layer", "upper wall"}),
+    marked<&Observable::has_means>(
+        {"cell_free_layer_empty", "",
+         "share of these columns or rays without a cell: above 0.05 the layers are no result; `nan` as they are",
+         output<&Snapshot::cell_free_layer_empty>}),
+    marked<&Observable::has_means>(
+        {"discharge_hematocrit", "",
+         "of a driven flow: flux of what the cells enclose over the flux of all; `nan` elsewhere and without cells",
+         output<&Snapshot::discharge_hematocrit>, "Discharge hematocrit"}),
+    marked<&Observable::has_means>({"aggregate_size_number_mean", "",
+                                    "cells over aggregates; a single cell is an aggregate of one",
+                                    output<&Snapshot::aggregate_size_number_mean>}),
+    marked<&Observable::has_means>(
+        {"aggregate_size_weight_mean", "",
+         "size of the aggregate a cell finds itself in, averaged over the cells: sum n^2 / sum n",
+         output<&Snapshot::aggregate_size_weight_mean>, "Aggregate size, mean over cells"}),
     {"kinetic_energy", "J/m",
      "of the fluid as it is simulated, `density_factor` times denser than it is; docs/physics.md, "
      "\"Energy\", for this and all below, which are per depth",
@@ -244,24 +223,14 @@ constexpr Observable series_columns[] = {
     {"body_force_power", "W/m",
      "what `fluid.body_force`, the pressure gradient and what balances cells' weight put in; `nan` without any",
      energy<&EnergySnapshot::body_force_power>, "Power", "from the body force"},
-    {.name = "external_power",
-     .unit = "W/m",
-     .doc = "what a stage's `forces` and the cells' weight put in; `nan` in a stage without",
-     .value = energy<&EnergySnapshot::external_power>,
-     .chart = "Power",
-     .line = "from forces on cells",
-     .of_forces = true},
+    marked<&Observable::of_forces>({"external_power", "W/m",
+                                    "what a stage's `forces` and the cells' weight put in; `nan` in a stage without",
+                                    energy<&EnergySnapshot::external_power>, "Power", "from forces on cells"}),
 };
 
 constexpr Observable size_columns[] = {
-    {.name = "cells",
-     .unit = "",
-     .doc = "the size: cells of an aggregate",
-     .value = [](const Row& row) -> Value { return row.size; }},
-    {.name = "aggregates",
-     .unit = "",
-     .doc = "how many aggregates have it",
-     .value = [](const Row& row) -> Value { return row.aggregates_of_size; }},
+    {"cells", "", "the size: cells of an aggregate", [](const Row& row) -> Value { return row.size; }},
+    {"aggregates", "", "how many aggregates have it", [](const Row& row) -> Value { return row.aggregates_of_size; }},
 };
 
 std::vector<Observable> with_instant(std::span<const Observable> own) {
