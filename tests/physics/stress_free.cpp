@@ -12,7 +12,7 @@ using namespace rouleau::test;
 
 namespace {
 
-Surfaces one_cell(const core::TriangleSurface& first, const core::TriangleSurface& rest) {
+Surfaces cell_at_rest(const core::TriangleSurface& first, const core::TriangleSurface& rest) {
   Surfaces cells;
   cells.types.push_back(
       std::make_shared<const RestSurface>(core::created_as(core::rest_surface(first), core::rest_surface(rest))));
@@ -32,16 +32,17 @@ struct Uniform {
   double (*tension)(double stretch);
   double (*energy)(double stretch);
 };
-constexpr double modulus = 0.3, dilation = 4;
+constexpr double plane_modulus = 0.3, dilation = 4;
 std::vector<Uniform> laws_under_uniform_stretch() {
-  return {{surface_law("neo-hookean", {modulus, 0}), [](double l) { return modulus * (1 - std::pow(l, -6)); },
-           [](double l) { return modulus / 2 * (2 * l * l - 3 + std::pow(l, -4)); }},
-          {surface_law("skalak", {modulus, dilation, 0}),
-           [](double l) { return modulus * (l * l - 1 + dilation * l * l * (std::pow(l, 4) - 1)); },
-           [](double l) {
-             const double one = 2 * l * l - 2, two = std::pow(l, 4) - 1;
-             return modulus / 4 * (one * one + 2 * one - 2 * two + dilation * two * two);
-           }}};
+  return {
+      {surface_law("neo-hookean", {plane_modulus, 0}), [](double l) { return plane_modulus * (1 - std::pow(l, -6)); },
+       [](double l) { return plane_modulus / 2 * (2 * l * l - 3 + std::pow(l, -4)); }},
+      {surface_law("skalak", {plane_modulus, dilation, 0}),
+       [](double l) { return plane_modulus * (l * l - 1 + dilation * l * l * (std::pow(l, 4) - 1)); },
+       [](double l) {
+         const double one = 2 * l * l - 2, two = std::pow(l, 4) - 1;
+         return plane_modulus / 4 * (one * one + 2 * one - 2 * two + dilation * two * two);
+       }}};
 }
 
 /// Neo-Hookean energy of a unit sphere whose axes are stretched by `axes`: I1 and I2 of each tangent plane follow from
@@ -56,7 +57,7 @@ double energy_of_stretched_sphere(const Vec<3>& axes) {
       const double angle = 2 * std::numbers::pi * (j + 0.5) / steps;
       const Vec<3> square(r * r * std::cos(angle) * std::cos(angle), r * r * std::sin(angle) * std::sin(angle), z * z);
       const double trace = c.sum() - c.dot(square), det = c.prod() * square.cwiseQuotient(c).sum();
-      sum += modulus / 2 * (trace - 3 + 1 / det);
+      sum += plane_modulus / 2 * (trace - 3 + 1 / det);
     }
   }
   return sum * 4 * std::numbers::pi / steps / steps;
@@ -76,7 +77,7 @@ class RelaxedCell {
   /// `reduced`: reduced volume of the shape that is free of stress, an oblate spheroid with the area of the cell.
   RelaxedCell(int n, double reduced, const RedCell& moduli, double bent = 0)
       : disc_(core::content_of(core::biconcave_disc(n, radius))),
-        cell_(one_cell(spheroid(n, disc_.reduced_volume()), spheroid(n, reduced))),
+        cell_(cell_at_rest(spheroid(n, disc_.reduced_volume()), spheroid(n, reduced))),
         forces_(cell_, {laws(moduli)}) {
     // Out of its symmetry, so that it finds what has less energy nearby.
     for (int i = 0; i < cell_.node_count(); ++i) {
@@ -189,8 +190,8 @@ TEST_CASE("a sphere that is free of stress as a smaller one has the law's tensio
   const double stretch = GENERATE(0.9, 1.05, 1.5);
   const double radius = 3;
   for (const auto& [law, tension, energy] : laws_under_uniform_stretch()) {
-    Surfaces cell = one_cell(core::ellipsoid(12, Vec<3>::Constant(radius)),
-                             core::ellipsoid(12, Vec<3>::Constant(radius / stretch)));
+    Surfaces cell = cell_at_rest(core::ellipsoid(12, Vec<3>::Constant(radius)),
+                                 core::ellipsoid(12, Vec<3>::Constant(radius / stretch)));
     core::SurfaceForces forces(cell, {{law}});
     for (const double of_triangle : forces.tensions(cell, 0))
       CHECK(of_triangle == Approx(tension(stretch)).epsilon(1e-9));
@@ -215,8 +216,8 @@ TEST_CASE("energy of a stretched sphere converges to the integral over it", "[st
   double error[3];
   for (int k = 0; k < 3; ++k) {
     const int n = 8 << k;
-    Surfaces cell = one_cell(core::ellipsoid(n, axes), core::unit_sphere(n));
-    core::SurfaceForces forces(cell, {{surface_law("neo-hookean", {modulus, 0})}});
+    Surfaces cell = cell_at_rest(core::ellipsoid(n, axes), core::unit_sphere(n));
+    core::SurfaceForces forces(cell, {{surface_law("neo-hookean", {plane_modulus, 0})}});
     error[k] = std::abs(forces.energy(cell) / exact - 1);
     std::cout << "stretched sphere, n " << n << ": energy off by " << error[k] << "\n";
   }
