@@ -13,6 +13,7 @@
 #include "command/process/program.hpp"
 #include "command/process/terminal.hpp"
 #include "observe/observables.hpp"
+#include "run/version.hpp"
 #include "transport/launcher.hpp"
 
 namespace {
@@ -51,7 +52,7 @@ std::string overview() {
   return text +
          "\n"
          "  --help, -h    this text; after a command: its own help\n"
-         "  --version     the program's version\n\n"
+         "  --version     the program's version, compiler and instruction set\n\n"
          "Start here: rouleau run scenes/four-cells-shear.json, then open the report that it names.\n"
          "Pages: docs/first-run.md and docs/tutorial.md; when installed, in share/doc/Rouleau.\n";
 }
@@ -67,7 +68,8 @@ int dispatch(const std::vector<std::string>& arguments) {
     return exit_code::done;
   }
   if (word == "--version") {
-    std::cout << "rouleau " ROULEAU_VERSION "\n";
+    std::cout << "rouleau " ROULEAU_VERSION "\nbuilt from " << run::program_version()
+              << " by compiler " __VERSION__ "; vector loops run with " << name_of(instruction_set()) << '\n';
     return exit_code::done;
   }
   if (word == "columns") {  // for scripts/docs, not for users

@@ -160,7 +160,7 @@ def roff(text):
 def man(program, commands):
     seconds = int(os.environ.get("SOURCE_DATE_EPOCH", os.stat(program).st_mtime))
     date = datetime.datetime.fromtimestamp(seconds, datetime.timezone.utc).date()
-    version = said(program, "--version").split()[-1]
+    version = said(program, "--version").split()[1]
     overview = said(program, "--help")
     first = overview.splitlines()[0]
     text = f'.TH ROULEAU 1 "{date}" "rouleau {version}" "User Commands"\n.nh\n.ad l\n'
