@@ -2,6 +2,7 @@
 #include <array>
 #include <csignal>
 #include <iostream>
+#include <rouleau/dispatch.hpp>
 #include <string>
 #include <vector>
 

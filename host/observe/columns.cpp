@@ -261,15 +261,13 @@ std::vector<Observable> columns_of_cells() {
   add("extent_y", "m", "likewise, along y", cell<&CellSnapshot::extent, 1>);
   add("extent_z", "m", "likewise, along z", cell<&CellSnapshot::extent, 2>);
   add("tank_treading_frequency", "1/s",
-      "turns of the membrane within its shape at this instant, counter-clockwise; of a shape that is round in the "
-      "plane of x and y (deformation below 1e-6) turns altogether",
+      "turns of the membrane within its shape, counter-clockwise; of a shape round in the plane of x and y all turns",
       cell<&CellSnapshot::treading>);
   add("velocity_x", "m/s", "of the cell along x: mean over what it encloses", cell<&CellSnapshot::velocity>);
   add("velocity_over_mean", "", "that over `mean_velocity_m_per_s` of series.csv; `nan` where this is",
       [](const Row& row) -> Value { return row.cell->velocity / row.output.mean_velocity; });
   add("rear_hollow", "m",
-      "depth of the hollow at the rear (parachute): along x, from the rim to the membrane on the line through the "
-      "centroid; the rear is where the cell comes from. `nan` where that line passes beside the cell",
+      "depth along x of the hollow at the rear, from its rim to the membrane behind the centroid; `nan` without one",
       cell<&CellSnapshot::rear_hollow>);
   add("offset_from_axis", "m",
       "of the centroid from the axis of a tube or duct, or the plane amid two walls (slipper); `nan` elsewhere",

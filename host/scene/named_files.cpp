@@ -57,6 +57,11 @@ std::vector<std::string> cell_names() {
   return names;
 }
 
+const nlohmann::json& cell_schema() {
+  static const nlohmann::json schema = nlohmann::json::parse(cell_schema_text);
+  return schema;
+}
+
 ShippedCell shipped_cell(const std::string& name, const Place& place) {
   const std::vector<std::string> names = cell_names();
   if (std::find(names.begin(), names.end(), name) == names.end())
@@ -65,7 +70,7 @@ ShippedCell shipped_cell(const std::string& name, const Place& place) {
                     "\n  there are: " + (names.empty() ? "none, in " + folder_of_cells().string() : listed(names)));
   const std::filesystem::path file = folder_of_cells() / (name + ".json");
   const json::Document document = json::Document::read(file);
-  json::validate(document, nlohmann::json::parse(cell_schema_text));
+  json::validate(document, cell_schema());
   return {file, document.root()};
 }
 

@@ -15,6 +15,9 @@ namespace rouleau::scene {
 /// tables of cells, pictures. Such an object may have its hash, "sha256", beside it, or a list of hashes.
 std::vector<std::string> entries_with_files(const nlohmann::json& scene);
 
+/// What the files of shipped cells fit: cell.schema.json.
+const nlohmann::json& cell_schema();
+
 /// Names of the cells that are shipped, in order: those of the files in share/rouleau/cells.
 std::vector<std::string> cell_names();
 

@@ -23,7 +23,6 @@ NOT_YET = {
     "docs/scene.md",
     "docs/walls.md",
     "docs/models.md",
-    "docs/python.md",
     "docs/simulation.md",
     "docs/reference/scene.md",
     "docs/reference/models.md",

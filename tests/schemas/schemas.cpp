@@ -23,6 +23,7 @@
 #include "plugin/collection.hpp"
 #include "plugin/lock.hpp"
 #include "plugin/manifest_reader.hpp"
+#include "scene/named_files.hpp"
 #include "scene/read_scene.hpp"
 #include "scene/scene.hpp"
 #include "stability/limits_document.hpp"
@@ -90,6 +91,7 @@ std::vector<std::unique_ptr<Judges>> all_judges() {
   add("limits file", stability::limits_schema());
   add("study's result", study::study_result_schema());
   add("limits' result", stability::limits_result_schema());
+  add("cell", scene::cell_schema());
   return judges;
 }
 
@@ -289,7 +291,7 @@ TEST_CASE("the host and valijson accept and refuse the same documents by every s
     for (const auto& judges : all) judges->judge(*document);
     ++judged;
   };
-  for (const char* folder : {"scenes", "studies", "limits", "plugins", "sdk", "tests"}) {
+  for (const char* folder : {"scenes", "cells", "studies", "limits", "plugins", "sdk", "tests"}) {
     for (const auto& file : files_in(source / folder, true)) judge(file);
   }
   for (const auto& file : files_in(source / "tests/fuzz/corpus", false)) judge(file);
