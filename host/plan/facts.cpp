@@ -116,7 +116,7 @@ MembraneFacts membrane_facts(const Models& models, std::size_t type, const scene
   if (cell.stress_free && models.has_cells) {
     const int dimension = models.scene->domain.dimension();
     facts.first = shape::first_stretch(cell, made.membranes[type], stage.units, dimension);
-    facts.tension = stage.units.to_lattice(facts.first->tension_N_per_m, units::dimension::tension);
+    facts.tension = stage.units.to_lattice(facts.first->tension, units::dimension::tension);
   }
   const auto* circle = std::get_if<scene::Circle>(&shape);
   const auto* sphere = std::get_if<scene::Sphere>(&shape);

@@ -125,8 +125,8 @@ std::string to_text(const Plan& plan, const PlanReport& report) {
   if (!report.first_stretches.empty()) out << "\nFirst shapes against stress-free ones\n";
   for (const shape::FirstStretch& first : report.first_stretches) {
     out << "  " << first.type << ": principal stretches from " << formatted(first.least) << " to "
-        << formatted(first.most) << ", elastic energy " << formatted(first.energy_J_per_m2) << " J/m2 and tension "
-        << formatted(first.tension_N_per_m) << " N/m on average\n";
+        << formatted(first.most) << ", elastic energy " << formatted(first.energy) << " J/m2 and tension "
+        << formatted(first.tension) << " N/m on average\n";
   }
 
   out << "\nDimensionless numbers\n";

@@ -19,10 +19,16 @@ void add_type(core::Surfaces& cells, const scene::CellType& type, double spacing
 /// How a cell begins whose membrane rests in another shape.
 struct FirstStretch {
   std::string type;
-  double least, most;      ///< principal stretches; of an outline those of its segments
-  double energy_J_per_m2;  ///< of the laws in the plane, mean over the membrane at rest; NaN: a law does not tell it
-  double tension_N_per_m;  ///< mean size
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(FirstStretch, type, least, most, energy_J_per_m2, tension_N_per_m)
+  double least, most;  ///< principal stretches; of an outline those of its segments
+  double energy;       ///< J/m2, of the laws in the plane, mean over the membrane at rest; NaN: a law does not tell it
+  double tension;      ///< N/m, mean size
+  friend void to_json(nlohmann::json& to, const FirstStretch& of) {
+    to = {{"type", of.type},
+          {"least", of.least},
+          {"most", of.most},
+          {"energy_J_per_m2", of.energy},
+          {"tension_N_per_m", of.tension}};
+  }
 };
 FirstStretch first_stretch(const scene::CellType& type, const std::vector<core::MembraneLaw>& laws,
                            const units::LatticeUnits& units, int dimension);
