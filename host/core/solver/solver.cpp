@@ -146,7 +146,7 @@ void Solver<T, Set>::make_passes() {
   StepFeatures features{.viscosity_contrast = fluid_.setting().viscosity_contrast,
                         .moving_frame = setup_.follow_cells,
                         .changing_drive = setup_.oscillation.any() || flow_control_.has_value(),
-                        .changing_forces = cell_tasks_ != nullptr && setup_.external.any(),
+                        .changing_forces = cell_tasks_ != nullptr && !setup_.external.pulls.empty(),
                         .ranks = ranks};
   if (cell_tasks_) cell_tasks_->describe(features);
   const Schedule schedule = make_schedule(features);

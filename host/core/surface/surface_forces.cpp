@@ -94,9 +94,7 @@ void SurfaceForces::take_semi_implicit_steps(Surfaces& surfaces, double viscosit
 
 void SurfaceForces::take_viscosity(Surfaces& surfaces, const std::vector<double>& moduli, double tension_unit) {
   for (std::size_t t = 0; t < types_.size(); ++t) {
-    const auto& laws = types_[t].laws;
-    if (std::none_of(laws.begin(), laws.end(), [](const Law& law) { return law.viscous; })) continue;
-    types_[t].viscosity.emplace(surfaces, static_cast<int>(t), moduli[t], tension_unit);
+    if (types_[t].viscous()) types_[t].viscosity.emplace(surfaces, static_cast<int>(t), moduli[t], tension_unit);
   }
 }
 
@@ -118,7 +116,7 @@ SurfaceForces::Scratch& SurfaceForces::scratch_of(int first_cell) {
   make(s.invariant, triangles);
   make(s.stress, triangles);
   make(s.force, 3 * triangles);
-  s.straining.resize(triangles);
+  if (std::ranges::any_of(types_, &Type::viscous)) s.straining.resize(triangles);
   make(s.law, std::max(triangles, nodes));
   for (auto* array : {&s.turned_length, &s.edge_turn}) array->assign(edges, 0.0);
   for (auto* array : {&s.curvature, &s.area_ratio, &s.node_moment, &s.node_pull}) array->assign(nodes, 0.0);

@@ -1,6 +1,7 @@
 // Forces of the membrane laws on the nodes of surfaces: minus the gradient of the laws' energies.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -70,6 +71,7 @@ class SurfaceForces {
     std::optional<SurfaceFilter> filter;  // of a semi-implicit step
     std::array<std::size_t, 3> held_force = {0, 0, 0};  // of the filter: in Surfaces::state
     std::optional<SurfaceViscosity> viscosity;
+    [[nodiscard]] bool viscous() const { return std::ranges::any_of(laws, &Law::viscous); }
   };
   /// One worker's arrays, for one cell after another.
   struct Scratch {
