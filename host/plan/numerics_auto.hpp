@@ -18,7 +18,7 @@ class OpenScene {
   /// lattice fits the domain.
   OpenScene(json::Document document, Faults& faults);
   /// The document with values for what it leaves open: the cheapest that keep the target error by what was measured
-  /// (docs/accuracy.md) and the bounds. What the scene says of its numerics stays, so that it can be read again. No
+  /// (docs/auto.md) and the bounds. What the scene says of its numerics stays, so that it can be read again. No
   /// choice for a scene that pins its numerics, or has faults.
   [[nodiscard]] json::Document filled_in(const NumericsBounds& bounds, std::optional<NumericsChoice>& choice) const;
   /// Makes the region of a scene that was read from it; once for all lattices, where one is chosen.

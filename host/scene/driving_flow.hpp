@@ -66,7 +66,7 @@ double oscillation_delay(const Stage& stage, const Scene& scene);
 
 /// Largest Mach number of moving walls without a warning. Without convective inertia the fluid's equations are linear
 /// in the velocity, and what is left is the membranes' step in time: a capsule's deformation changes by 2e-4 from 0.03
-/// to 0.2 (docs/accuracy.md).
+/// to 0.2 (docs/results/accuracy-2d.md).
 inline double largest_wall_mach(bool inertia) { return inertia ? 0.1 : 0.2; }
 
 }  // namespace rouleau::scene

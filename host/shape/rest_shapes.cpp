@@ -80,7 +80,7 @@ FirstStretch first_stretch(const scene::CellType& type, const std::vector<core::
 
 std::string doubt_of_rest(const scene::CellType& type) {
   // Measured without fluid: a spheroid of reduced volume 0.7 to 0.95 gives the disc the least energy, one of 0.98 and a
-  // sphere a cup (docs/three-dimensions.md).
+  // sphere a cup (docs/results/stress-free-2026-11.md).
   constexpr double least = 0.695, most = 0.955, deflated = 0.8;
   if (!type.stress_free || type.segments > 0 || std::holds_alternative<scene::Biconcave>(type.stress_free->shape))
     return {};
@@ -90,7 +90,7 @@ std::string doubt_of_rest(const scene::CellType& type) {
   if ((spheroid && reduced > least && reduced < most) || core::content_of(first).reduced_volume() > deflated) return {};
   return "cell type " + type.name + ": with a stress-free shape of reduced volume " + number(reduced, 3) +
          " it may come to rest as a cup and not as a biconcave disc, which spheroids of 0.7 to 0.95 give "
-         "(docs/three-dimensions.md); let one cell come to rest first";
+         "(docs/results/stress-free-2026-11.md); let one cell come to rest first";
 }
 
 }  // namespace rouleau::shape
