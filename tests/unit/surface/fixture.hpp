@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "core/surface/surface_forces.hpp"
 #include "core/surface/surface_normals.hpp"
@@ -46,6 +47,16 @@ inline double largest_force(const Surfaces& s) {
   double most = 0;
   for (int i = 0; i < s.node_count(); ++i) most = std::max(most, force_on(s, i).norm());
   return most;
+}
+
+/// Sum of the forces, and their torque about a point beside the surface.
+inline std::pair<Vec<3>, Vec<3>> sum_and_torque(const Surfaces& s) {
+  Vec<3> sum = Vec<3>::Zero(), torque = Vec<3>::Zero();
+  for (int i = 0; i < s.node_count(); ++i) {
+    sum += force_on(s, i);
+    torque += (s.nodes(0)[i] - Vec<3>(3, -2, 5)).cross(force_on(s, i));
+  }
+  return {sum, torque};
 }
 
 }  // namespace rouleau::test
