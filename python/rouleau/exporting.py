@@ -7,12 +7,12 @@ import base64
 import html
 import importlib
 import math
-import os
 import pathlib
 import struct
 from typing import TYPE_CHECKING, Any, Iterable, Sequence
 
 from .errors import Error, Fault
+from .pages import replace_file
 
 if TYPE_CHECKING:
     import numpy
@@ -69,13 +69,18 @@ def write_frame(frame: Any, path: pathlib.Path, wrapped: bool) -> pathlib.Path:
     if path.suffix.lower() != ".vtp" and not mesh.surfaces:
         raise Error(Fault(f"{path.name} wants surfaces, and this frame has {'outlines' if frame.cells else 'no cells'}",
                           "write it as .vtp, which has lines, too"))
-    partial = path.with_name(f".{path.name}.partial")
-    try:
-        partial.write_bytes(writers[path.suffix.lower()](mesh, frame))
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
+    replace_file(path, writers[path.suffix.lower()](mesh, frame))
     return path
+
+
+def write_cell(cell: Any, path: pathlib.Path) -> None:
+    """Cell.write"""
+    if cell.triangles is None:
+        raise Error(Fault("an outline is no surface", "write cells of three dimensions"))
+    places = (1e6 * (cell.outline - cell.outline.mean(axis=0))).tolist()
+    lines = ["v %.17g %.17g %.17g\n" % tuple(place) for place in places]
+    lines += ["f %d %d %d\n" % tuple(corner + 1 for corner in corners) for corners in cell.triangles.tolist()]
+    replace_file(path, "".join(lines).encode())
 
 
 def _array(name: str, values: Any, components: int = 1) -> str:

@@ -135,11 +135,19 @@ def write_page(path: pathlib.Path, title: str, parts: Iterable[str]) -> pathlib.
 
 
 def write_whole(path: pathlib.Path, text: str) -> None:
-    """Writes a file whole or not at all."""
+    """Writes a file whole or not at all, and makes its folder."""
     path.parent.mkdir(parents=True, exist_ok=True)
+    replace_file(path, text.encode())
+
+
+def replace_file(path: pathlib.Path, content: bytes) -> None:
+    """The same in a folder that is there. Nothing is left beside it where that fails."""
     partial = path.with_name(f".{path.name}.partial")
-    partial.write_text(text, encoding="utf-8")
-    os.replace(partial, path)
+    try:
+        partial.write_bytes(content)
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
 
 
 def link(path: pathlib.Path | str, page: pathlib.Path) -> str:

@@ -115,12 +115,8 @@ class Cell:
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """A surface as an OBJ file, in um around the mean of its nodes: what a scene's `mesh` with the unit "1 um" begins as."""
-        if self.triangles is None:
-            raise Error(Fault("an outline is no surface", "write cells of three dimensions"))
-        places = (1e6 * (self.outline - self.outline.mean(axis=0))).tolist()
-        lines = ["v %.17g %.17g %.17g\n" % tuple(place) for place in places]
-        lines += ["f %d %d %d\n" % tuple(corner + 1 for corner in corners) for corners in self.triangles.tolist()]
-        pathlib.Path(path).write_text("".join(lines))
+        from . import exporting
+        exporting.write_cell(self, pathlib.Path(path))
 
     def section(self) -> Cell:
         """In three dimensions the outline in which the plane across z through the surface's middle cuts it (of several the

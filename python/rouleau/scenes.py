@@ -12,7 +12,7 @@ import operator
 import os
 import pathlib
 import tempfile
-from typing import Any, Iterator, Mapping, Union
+from typing import Any, Iterable, Iterator, Mapping, Union
 
 from .errors import Error, Fault
 from .program import call_json
@@ -96,6 +96,16 @@ def settings(changes: Mapping[str, Any], scene: SceneLike) -> list[str]:
 def options_of(changes: Mapping[str, Any], scene: SceneLike) -> list[str]:
     """Options of the program that make these changes."""
     return [word for assignment in settings(changes, scene) for word in ("--set", assignment)]
+
+
+def changes_of(assignments: Iterable[str]) -> dict[str, Any]:
+    """Changes as `run` takes them, of texts POINTER=VALUE as the program's --set takes them: a value is JSON, else text."""
+    def value_of(text: str) -> Any:
+        try:
+            return json.loads(text)
+        except json.JSONDecodeError:
+            return text
+    return {pointer: value_of(value) for pointer, _, value in (assignment.partition("=") for assignment in assignments)}
 
 
 def hashes_of_files(scene: SceneLike, changes: Mapping[str, Any]) -> list[str]:
