@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "accuracy/error_bars.hpp"
 #include "base/text.hpp"
 #include "observe/aggregate_words.hpp"
 
@@ -117,25 +118,17 @@ std::string aggregation_in_words(const std::vector<Event>& events, const Json& c
   return words + "; all single from " + moment(*alone.base());
 }
 
-/// Of the last stage that has one, over its second half, and whether it still changes there. Without an error bar three
-/// digits mean something.
+/// Of the last stage that has one: its mean, or why there is none.
 std::string viscosity_in_words(const Json& summary) {
-  const bool has_bar = summary.contains("error_bars") && summary.at("error_bars").contains("relative_viscosity");
   const Json& stages = summary.at("rheology");
   for (auto stage = stages.rbegin(); stage != stages.rend(); ++stage) {
-    const Json& means = stage->at("means");
-    if (!means.is_object() || !means.contains("relative_viscosity")) continue;
-    const Json& viscosity = means.at("relative_viscosity");
-    if (!viscosity.is_object() || !viscosity.at("mean").is_number()) continue;
-    const std::string half = " over the second half of " + stage->at("stage").get<std::string>();
-    const Json trend = viscosity.value("trend", Json());
-    const std::string changes = trend.is_string() ? "still " + trend.get<std::string>() : "";
-    if (has_bar) return changes.empty() ? "" : "relative viscosity " + changes + half;
-    const Json& deviation = viscosity.at("deviation");  // null where a single output has a value
-    if (!deviation.is_number()) return {};              // a single output is the value of an instant
-    return "relative viscosity " + number(viscosity.at("mean"), 3) + (changes.empty() ? "" : ", " + changes) +
-           ", without an error bar (--error-bar); its outputs have a standard deviation of " + number(deviation, 2) +
-           half;
+    const Json known = stage->value("/statistics/relative_viscosity"_json_pointer, Json());
+    if (!known.is_object()) continue;
+    const std::string in = " in " + stage->at("stage").get<std::string>();
+    if (!known.at("mean").is_number())
+      return "no mean of the relative viscosity" + in + ": " + known.at("verdict").get<std::string>();
+    return "relative viscosity " + accuracy::with_error(known.at("mean"), known.at("bar_95")) +
+           " (95 %; of chance, not of the lattice)" + in + " from " + number(known.at("from_s"), 3) + " s on";
   }
   return {};
 }

@@ -255,15 +255,18 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
   const core::AnyFluid<D>& fluid = solver.fluid();
   double drive = fluid.setting().body_force[0];
   if (scene_->domain.openings) drive = observe_openings(fluid, *scene_, units, snapshot);
-  const bool oscillates = setting.oscillation.any();
+  const bool oscillates = setting.oscillation.frequency != 0;
   const bool has_walls = !scene_->domain.periodic[1] || scene_->domain.has_shapes();  // across y, or of any shape
   const auto on_walls = has_walls ? solver.wall_forces() : core::WallForces<D>{};
   if (has_walls) {
     const auto stress = solver.mean_wall_stress(on_walls);
     snapshot.wall_stress_lower = units.to_si(stress.lower, units::dimension::pressure);
     snapshot.wall_stress_upper = units.to_si(stress.upper, units::dimension::pressure);
-    if (setting.shear_rate != 0 && !oscillates)
-      snapshot.relative_viscosity = (stress.lower - stress.upper) / 2 / (viscosity * setting.shear_rate);
+    const core::WallVelocity& walls = fluid.last_walls();
+    const double rate =
+        setting.oscillation.any() ? (walls.upper - walls.lower) / scene_->domain.nodes[1] : setting.shear_rate;
+    if (scene::walls_move(*setting.stage) && rate != 0 && !oscillates)
+      snapshot.relative_viscosity = (stress.lower - stress.upper) / 2 / (viscosity * rate);
   }
   if (scene::walls_move(*setting.stage)) {
     const core::WallVelocity& walls = fluid.last_walls();

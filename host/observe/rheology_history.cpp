@@ -46,44 +46,6 @@ std::optional<double> mean_of(const Column& time, const Column& values, double b
   return time.back() >= begin ? std::optional(values.back()) : std::nullopt;  // a single one
 }
 
-/// "rising" or "falling" where a straight line explains three quarters of the variance of these values, which a whole
-/// period of a sine does not let it (6/pi^2), and goes by more than a hundredth of the largest of them from end to end;
-/// else null.
-Json trend_of(const Column& time, const Column& values) {
-  constexpr std::size_t fewest = 5;
-  constexpr double explained = 0.75, slight = 0.01;
-  if (values.size() < fewest) return nullptr;
-  const auto count = static_cast<double>(values.size());
-  const double middle = std::accumulate(time.begin(), time.end(), 0.0) / count;
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
-  double times = 0, squares = 0, both = 0, largest = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double t = time[i] - middle, v = values[i] - mean;
-    times += t * t, squares += v * v, both += t * v;
-    largest = std::max(largest, std::abs(values[i]));
-  }
-  if (!(times > 0) || !(both * both >= explained * times * squares)) return nullptr;
-  const double change = both / times * (time.back() - time.front());
-  if (!(std::abs(change) > slight * largest)) return nullptr;
-  return change > 0 ? "rising" : "falling";
-}
-
-constexpr std::size_t parts = 4;
-/// Standard error of a mean in time from `begin` on, from the means of parts of equal length.
-double error_of(const Column& time, const Column& values, double begin, double mean) {
-  const double first = std::max(begin, time.front()), length = time.back() - first;
-  const auto integral_from = [&](std::size_t part) {
-    const double from = first + length * static_cast<double>(part) / parts;
-    return part == parts ? 0 : mean_from(time, values, from) * (time.back() - from);
-  };
-  double squares = 0;
-  for (std::size_t part = 0; part < parts; ++part) {
-    const double off = (integral_from(part) - integral_from(part + 1)) * parts / length - mean;
-    squares += off * off;
-  }
-  return std::sqrt(squares / (parts - 1) / parts);
-}
-
 /// Whether all (or, `any`, some two) of these cells share an aggregate.
 template <class Instant>
 bool together(const Instant& instant, const std::vector<int>& members, bool any) {
@@ -132,15 +94,13 @@ Json RheologyHistory::means(const StageHistory& stage) {
   const double middle = stage.instants.back().time / 2;
   Json result{{"from_s", middle}, {"outputs", stage.instants.size() - first}};
   for (std::size_t k = 0; k < averaged().size(); ++k) {
-    Column time, values, late, late_time;
+    Column time, values, late;
     for (std::size_t i = 0; i < stage.instants.size(); ++i) {
       const Instant& instant = stage.instants[i];
       if (!std::isfinite(instant.values[k])) continue;
       time.push_back(instant.time);
       values.push_back(instant.values[k]);
-      if (i < first) continue;
-      late.push_back(values.back());
-      late_time.push_back(instant.time);
+      if (i >= first) late.push_back(values.back());
     }
     const std::optional<double> mean = mean_of(time, values, middle);
     if (!mean && averaged()[k].at_openings) continue;
@@ -149,12 +109,49 @@ Json RheologyHistory::means(const StageHistory& stage) {
     const auto count = static_cast<double>(late.size());
     double squares = 0;
     for (const double value : late) squares += (value - *mean) * (value - *mean);
-    of_column = {{"mean", *mean},
-                 {"error", late.size() < parts ? Json() : json::number_or_null(error_of(time, values, middle, *mean))},
-                 {"deviation", count > 1 ? Json(std::sqrt(squares / (count - 1))) : Json()},
-                 {"trend", trend_of(late_time, late)}};
+    of_column = {{"mean", *mean}, {"deviation", count > 1 ? Json(std::sqrt(squares / (count - 1))) : Json()}};
   }
   return result;
+}
+
+Statistics RheologyHistory::statistics(const StageHistory& stage, std::size_t column) {
+  Column time, values;
+  for (const Instant& instant : stage.instants) {
+    time.push_back(instant.time);
+    values.push_back(instant.values[column]);
+  }
+  return observe::statistics(time, values);
+}
+
+Json RheologyHistory::statistics(const StageHistory& stage) {
+  Json result = Json::object();
+  for (std::size_t k = 0; k < averaged().size(); ++k) {
+    const auto has_value = [k](const Instant& instant) { return std::isfinite(instant.values[k]); };
+    if (std::any_of(stage.instants.begin(), stage.instants.end(), has_value))
+      result[averaged()[k].column()] = statistics(stage, k);
+  }
+  return result;
+}
+
+bool RheologyHistory::knows(std::string_view column, double standard_error) const {
+  const auto found = std::find_if(averaged().begin(), averaged().end(),
+                                  [column](const Observable& observable) { return observable.column() == column; });
+  if (stages_.empty() || found == averaged().end()) return false;
+  const Statistics known = statistics(stages_.back(), static_cast<std::size_t>(found - averaged().begin()));
+  return known.steady() && known.standard_error <= standard_error;
+}
+
+bool RheologyHistory::parted() const {
+  if (stages_.empty()) return false;
+  const Instant& start = stages_.back().instants.front();
+  const Instant& now = stages_.back().instants.back();
+  std::map<int, std::vector<int>> aggregates;
+  for (std::size_t i = 0; i < start.cell.size(); ++i) aggregates[start.label[i]].push_back(start.cell[i]);
+  return std::none_of(aggregates.begin(), aggregates.end(), [&](const auto& aggregate) {
+    const std::vector<int>& members = aggregate.second;
+    const bool there = std::all_of(members.begin(), members.end(), [&](int cell) { return now.has(cell); });
+    return members.size() > 1 && there && together(now, members, false);
+  });
 }
 
 Json RheologyHistory::dissociation(const StageHistory& stage) {
@@ -242,6 +239,7 @@ Json RheologyHistory::stages() const {
   for (const StageHistory& stage : stages_) {
     result.push_back({{"stage", stage.name},
                       {"means", means(stage)},
+                      {"statistics", statistics(stage)},
                       {"dissociation", dissociation(stage)},
                       {"rotation", rotation(stage)}});
   }

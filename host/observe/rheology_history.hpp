@@ -2,11 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
 #include "aggregates.hpp"
 #include "json/json.hpp"
 #include "snapshot.hpp"
+#include "statistics.hpp"
 
 namespace rouleau::observe {
 
@@ -19,10 +21,9 @@ class RheologyHistory {
   /// One object for each stage that has been seen, in order:
   ///   stage              its name
   ///   means              over the second half of the stage, {from_s, outputs, and for each column of series.csv that
-  ///                      has_means (observables.hpp) {mean, error, deviation, trend}}: mean in time, by straight lines
-  ///                      between outputs that have a value, its standard error from four equal parts (null: too few
-  ///                      outputs), standard deviation of the outputs, and "rising" or "falling" where they do so over
-  ///                      that half; null where no output has one
+  ///                      has_means (observables.hpp) {mean, deviation}}: mean in time, by straight lines between
+  ///                      outputs that have a value, and standard deviation of the outputs; null where no output has one
+  ///   statistics         of each of these columns that has a value: Statistics, in time from the start of the stage
   ///   dissociation       of each aggregate of two or more cells at the stage's start, {members, parted, separate};
   ///                      each of the two {strain, strain_before, time_s} from the start of the stage, or null: at
   ///                      `strain` the output after which its members never again were all in one aggregate (parted),
@@ -34,6 +35,10 @@ class RheologyHistory {
   ///                      outline (as many as fit into the second half, one if there is one at all; turns 0: over the
   ///                      second half)
   [[nodiscard]] nlohmann::json stages() const;
+  /// Whether the present stage has been steady for so long that the mean of a column is known so well.
+  [[nodiscard]] bool knows(std::string_view column, double standard_error) const;
+  /// Whether no aggregate of two or more cells with which the present stage began is in one piece.
+  [[nodiscard]] bool parted() const;
   /// Whether what it remembers has a value for each column that has means: one of another version may not.
   [[nodiscard]] bool fits() const;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RheologyHistory, stages_, stage_, start_strain_, start_time_)
@@ -56,6 +61,8 @@ class RheologyHistory {
     NLOHMANN_DEFINE_TYPE_INTRUSIVE(StageHistory, name, instants)
   };
   static nlohmann::json means(const StageHistory& stage);
+  static nlohmann::json statistics(const StageHistory& stage);
+  static Statistics statistics(const StageHistory& stage, std::size_t column);
   static nlohmann::json dissociation(const StageHistory& stage);
   static nlohmann::json rotation(const StageHistory& stage);
 

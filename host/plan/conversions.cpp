@@ -80,7 +80,8 @@ void add_drive(const scene::Scene& scene, const scene::StageSetting& stage, Rows
              u.to_si(force[axis], units::dimension::force_density), "N/m3", force[axis]);
   }
   if (stage.oscillation.any()) {
-    rows.convert("frequency of the oscillation", stage.stage->oscillation.frequency, "Hz", units::dimension::rate);
+    if (stage.stage->oscillates())
+      rows.convert("frequency of the oscillation", stage.stage->oscillation.frequency, "Hz", units::dimension::rate);
     if (stage.oscillating_rate != 0) {
       rows.convert("amplitude of the shear rate", stage.stage->oscillation.shear_rate, "1/s", units::dimension::rate);
     }

@@ -23,7 +23,7 @@ constexpr int modes = 60;  // of the first instants, when all of them are there
 
 bool driven_alike(const scene::Stage& a, const scene::Stage& b) {
   return a.shear_rate == b.shear_rate && a.mean_wall_speed == b.mean_wall_speed && a.mean_velocity == b.mean_velocity &&
-         a.pressure_gradient == b.pressure_gradient && !a.oscillates() && !b.oscillates();
+         a.pressure_gradient == b.pressure_gradient && !a.changes() && !b.changes();
 }
 
 }  // namespace

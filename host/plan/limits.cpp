@@ -77,7 +77,7 @@ void add_passages(const LimitedStage& of, LimitList& limits) {
 }
 
 void add_oscillation(const LimitedStage& of, LimitList& limits) {
-  if (!of.stage.oscillation.any()) return;
+  if (of.stage.oscillation.frequency == 0) return;
   const double frequency = of.stage.oscillation.frequency, half = of.scene.numerics.tau - 0.5;
   limits.above("time steps in a period of the oscillation" + of.where, 1 / frequency, steps_of_period * half * half,
                of.lower, of.density);

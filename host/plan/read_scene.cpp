@@ -178,7 +178,7 @@ void require_passages(const scene::Scene& scene) {
                " nodes along x and as many more along the others, close the passage, or widen it");
   }
   const auto drives = [&](const scene::Stage& stage) {
-    return scene::driving_force(stage, scene).x() != 0 || stage.oscillates();
+    return scene::driving_force(stage, scene).x() != 0 || stage.changes();
   };
   if (scene.domain.openings && !passages.through_x)
     refuse("these walls leave no way from the inlet to the outlet",

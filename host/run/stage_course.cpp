@@ -12,6 +12,7 @@ template <int D>
 void StageCourse::begin(const core::AnySolver<D>& solver) {
   state_.observer.start_stage();
   state_.stage_step = 0;
+  by_outputs_ = Ending::none;
   state_.steps_before = state_.steps;
   state_.stage_wall = 0;
   state_.rest_watch.stop();
@@ -25,6 +26,17 @@ bool StageCourse::compares_positions() const {
 }
 
 template <int D>
+Ending StageCourse::by_outputs(const core::AnySolver<D>& solver) const {
+  const scene::Stage& stage = *setting().stage;
+  if (!stage.until_parted && stage.until_mean.empty()) return Ending::none;
+  // The first rank alone has the outputs.
+  const bool found = stage.until_parted ? state_.rheology.parted()
+                                        : state_.rheology.knows(stage.until_mean, stage.until_standard_error);
+  if (core::of_first(solver.ranks(), found ? 1.0 : 0.0) == 0) return Ending::none;
+  return stage.until_parted ? Ending::parted : Ending::mean;
+}
+
+template <int D>
 Ending StageCourse::ending(const core::AnySolver<D>& solver) const {
   const scene::Stage& stage = *setting().stage;
   if (compares_positions()) {
@@ -33,6 +45,8 @@ Ending StageCourse::ending(const core::AnySolver<D>& solver) const {
       return Ending::at_rest;
   }
   if (stage.until_equilibrium && state_.equilibrium.reached()) return Ending::equilibrium;
+  if (state_.stage_step > 0)
+    if (const Ending found = by_outputs(solver); found != Ending::none) return found;
   if (state_.stage_step < setting().max_steps) return Ending::none;
   const bool by_strain =
       stage.strain && (!stage.duration || *stage.strain / std::abs(stage.shear_rate) <= *stage.duration);
@@ -51,6 +65,7 @@ Ending StageCourse::end(const core::AnySolver<D>& solver) {
 template <int D>
 void StageCourse::look(core::AnySolver<D>& solver) {
   const scene::StageSetting& setting = this->setting();
+  by_outputs_ = by_outputs(solver);
   if (!setting.stage->until_equilibrium || state_.stage_step < state_.equilibrium.next(energy_window())) return;
   const observe::CellEnergy energy = observe::cell_energy(solver);
   if (!energy.unknown.empty()) {
@@ -74,6 +89,7 @@ template void StageCourse::look(core::AnySolver<3>&);
 long StageCourse::next() const {
   const scene::Stage& stage = *setting().stage;
   long next = setting().max_steps;
+  if (by_outputs_ != Ending::none) next = std::min(next, state_.stage_step + 1);
   if (stage.until_at_rest) next = std::min(next, state_.rest_watch.end(rest_window()));
   if (stage.until_equilibrium) {
     const bool reached = state_.equilibrium.reached();

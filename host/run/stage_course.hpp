@@ -26,14 +26,14 @@ class StageCourse {
     state_.stage_step = step;
     state_.steps = state_.steps_before + step;
   }
-  /// What ends the stage here: at_rest, equilibrium, strain, duration or none.
+  /// What ends the stage here: at_rest, equilibrium, mean, parted, strain, duration or none.
   template <int D>
   [[nodiscard]] Ending ending(const core::AnySolver<D>& solver) const;
   /// The same, before the forces of a step: where a window of rest is over the next one begins.
   template <int D>
   Ending end(const core::AnySolver<D>& solver);
-  /// Forces computed: the energy of the cells, where the stage ends by it and a window is over. Throws Error(bad_input)
-  /// where it is unknown.
+  /// Forces computed, and outputs of this step written: what they say, and the energy of the cells, where the stage ends
+  /// by these and a window is over. Throws Error(bad_input) where the energy is unknown.
   template <int D>
   void look(core::AnySolver<D>& solver);
   /// The next step, after look(), at which the stage may end.
@@ -50,12 +50,16 @@ class StageCourse {
  private:
   /// Whether a window of rest is over.
   [[nodiscard]] bool compares_positions() const;
+  /// What outputs that have been written end the stage by: mean, parted or none.
+  template <int D>
+  [[nodiscard]] Ending by_outputs(const core::AnySolver<D>& solver) const;
   [[nodiscard]] long steps_of(double seconds) const;
   [[nodiscard]] long rest_window() const { return steps_of(plan_.scene->at_rest.window); }
   [[nodiscard]] long energy_window() const { return steps_of(plan_.scene->equilibrium.window); }
 
   const plan::Plan& plan_;
   RunState& state_;
+  Ending by_outputs_ = Ending::none;  ///< at the last look
 };
 
 }  // namespace rouleau::run

@@ -16,12 +16,14 @@
 namespace rouleau::run {
 
 /// What ended a stage; none: it goes on.
-enum class Ending { none, duration, strain, at_rest, equilibrium, max_steps, interrupted, failed };
+enum class Ending { none, duration, strain, at_rest, equilibrium, mean, parted, max_steps, interrupted, failed };
 NLOHMANN_JSON_SERIALIZE_ENUM(Ending, {{Ending::none, ""},
                                       {Ending::duration, "duration"},
                                       {Ending::strain, "strain"},
                                       {Ending::at_rest, "at_rest"},
                                       {Ending::equilibrium, "equilibrium"},
+                                      {Ending::mean, "mean"},
+                                      {Ending::parted, "parted"},
                                       {Ending::max_steps, "max_steps"},
                                       {Ending::interrupted, "interrupted"},
                                       {Ending::failed, "failed"}})

@@ -107,13 +107,13 @@ double steady_rate(const Stage& stage, const Scene& scene) {
 
 double mean_shear_rate(const Stage& stage, const Scene& scene) {
   const double steady = steady_rate(stage, scene);
-  if (!stage.oscillates()) return steady;
+  if (!stage.changes()) return steady;
   return steady + mean_rate(stage.oscillation.shear_rate, {stage.oscillation.pressure_gradient, 0}, scene);
 }
 
 bool knows_developed_flow(const Stage& stage, const Scene& scene) {
   if (scene.domain.has_shapes() || scene.domain.is_open()) return false;
-  return !scene.domain.is_duct() || (!stage.oscillates() && scene.fluid.layers.empty());
+  return !scene.domain.is_duct() || (!stage.changes() && scene.fluid.layers.empty());
 }
 
 bool knows_developed_flows(const Scene& scene) {

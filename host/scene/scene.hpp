@@ -233,6 +233,7 @@ enum class WallStart { impulsive, developed };
 /// What is added to what drives a stage: amplitudes times sin(2 pi frequency t), t from the start of the stage.
 struct Oscillation {
   double frequency = 0;          ///< Hz; 0: nothing oscillates
+  bool ramp = false;             ///< in place of the sine: from minus to plus these amplitudes over the stage's duration
   double shear_rate = 0;         ///< 1/s
   double mean_wall_speed = 0;    ///< m/s
   double pressure_gradient = 0;  ///< Pa/m
@@ -256,7 +257,9 @@ struct Stage {
   std::string name;
   std::optional<double> duration;  ///< s
   std::optional<double> strain;    ///< strain of this stage, |shear_rate| x time
-  bool until_at_rest = false, until_equilibrium = false;
+  bool until_at_rest = false, until_equilibrium = false, until_parted = false;
+  std::string until_mean;           ///< column of series.csv; empty: it does not end by a mean
+  double until_standard_error = 0;  ///< of that mean, in the column's unit
   double shear_rate = 0.0;  ///< 1/s, of either sign: speed of the upper wall less that of the lower, over the height
   double mean_wall_speed = 0.0;  ///< m/s, of both walls together, along x
   WallStart start = WallStart::impulsive;
@@ -271,8 +274,14 @@ struct Stage {
   static constexpr const char* common_density_factor = "numerics.density_factor";
   [[nodiscard]] bool has_own_density_factor() const { return density_factor_key != common_density_factor; }
   [[nodiscard]] bool oscillates() const { return oscillation.frequency != 0; }
+  /// Whether what drives it changes in time, as the scene says.
+  [[nodiscard]] bool changes() const { return oscillates() || oscillation.ramp; }
+  /// Whether it may end before its duration or strain.
+  [[nodiscard]] bool may_end_early() const {
+    return until_at_rest || until_equilibrium || until_parted || !until_mean.empty();
+  }
   /// Whether its walls shear at one rate: strain is counted by it.
-  [[nodiscard]] bool shears_steadily() const { return shear_rate != 0 && !oscillates(); }
+  [[nodiscard]] bool shears_steadily() const { return shear_rate != 0 && !changes(); }
 };
 
 /// When an output is due: every so much strain, every so many seconds of simulated time, or both. Empty: never.

@@ -59,7 +59,7 @@ void check_until(const SceneFields& fields, const Stage& stage, const Scene& sce
 void check_stage(const SceneFields& fields, const Stage& stage, const Scene& scene) {
   const auto& pointer = stage.pointer;
   const bool flows = scene.domain.is_open() || walls_move(stage) || stage.pressure_gradient.x() != 0.0 ||
-                     stage.mean_velocity || stage.oscillates();
+                     stage.mean_velocity || stage.changes();
   if (fields.has(pointer + "/walls") && fields.has(pointer + "/shear_rate")) {
     fields.refuse_key(pointer + "/walls", "walls and shear_rate both say how the walls move; leave one of them out");
   }
@@ -89,9 +89,18 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
         "the flow that an oscillation settles to is not known in a fluid with layers\nleave start out, and let "
         "some periods pass");
   }
-  if (stage.strain && stage.oscillates()) {
-    fields.refuse_key(pointer + "/strain",
-                      "strain does not grow evenly in a flow that oscillates; end the stage by duration");
+  if (stage.strain && stage.changes()) {
+    fields.refuse_key(pointer + "/strain", "strain does not grow evenly in a flow that " +
+                                               std::string(stage.oscillates() ? "oscillates" : "a ramp changes") +
+                                               "; end the stage by duration");
+  }
+  if (stage.oscillation.ramp && !stage.duration)
+    fields.refuse(pointer, "a ramp lasts as long as its stage\ngive the stage a duration (such as \"2 s\")");
+  if (stage.oscillation.ramp && stage.start == WallStart::developed) {
+    fields.refuse(
+        pointer + "/start",
+        "a flow that a ramp changes is not developed\nlet a stage at the ramp's first value go before, or leave "
+        "start out");
   }
   if (stage.strain && stage.mean_wall_speed != 0 && stage.shear_rate == 0) {
     fields.refuse_key(pointer + "/strain",
@@ -122,6 +131,18 @@ void read_walls(const SceneFields& fields, const std::string& pointer, double he
       std::abs(difference) > 1e-12 * std::max(std::abs(lower), std::abs(upper)) ? difference / height : 0.0;
 }
 
+/// A value, or a ramp from one to another: then their mean, and half of what it rises by.
+double read_drive(const SceneFields& fields, const std::string& pointer, const char* unit, AllowedRange range,
+                  Stage& stage, double& half_rise) {
+  if (!fields.has(pointer) || !fields.at(pointer).is_object()) return fields.quantity_or(pointer, unit, range, 0.0);
+  const double from = fields.quantity(pointer + "/from", unit, range),
+               to = fields.quantity(pointer + "/to", unit, range);
+  if (from == to) fields.refuse(pointer, "a ramp between equal values changes nothing; give the value alone");
+  stage.oscillation.ramp = true;
+  half_rise = (to - from) / 2;
+  return (from + to) / 2;
+}
+
 /// The amplitude is of that which drives the stage, in its unit and form.
 Oscillation read_oscillation(const SceneFields& fields, const std::string& stage, double height) {
   const std::string pointer = stage + "/oscillation", amplitude = pointer + "/amplitude";
@@ -139,6 +160,8 @@ Oscillation read_oscillation(const SceneFields& fields, const std::string& stage
     fields.refuse_key(pointer, "this stage has both " + driven[0] + " and " + driven[1] +
                                    ", and an oscillation is of one of them; leave the other out");
   }
+  if (fields.at(stage + "/" + driven[0]).contains("from"))
+    fields.refuse_key(pointer, "a ramp does not oscillate at the same time; leave one of the two out");
   Oscillation oscillation;
   oscillation.frequency = fields.quantity(pointer + "/frequency", "Hz", range::frequency);
   const bool of_walls = driven[0] == "walls";
@@ -183,8 +206,7 @@ CellForce read_force(const SceneFields& fields, const std::string& pointer, cons
   if (!fields.has(ramp)) return force;
   force.ramp = fields.quantity(ramp, "s", range::time);
   const double strained = stage.strain ? *stage.strain / std::abs(stage.shear_rate) : INFINITY;
-  if (stage.until_at_rest || stage.until_equilibrium ||
-      force.ramp > std::min(stage.duration.value_or(INFINITY), strained) * (1 + 1e-9))
+  if (stage.may_end_early() || force.ramp > std::min(stage.duration.value_or(INFINITY), strained) * (1 + 1e-9))
     fields.refuse(
         ramp,
         "this stage may end before the force has come to its value\ngive a shorter ramp, or let another stage "
@@ -202,6 +224,19 @@ void read_forces(const SceneFields& fields, Stage& stage, int dimension, const S
   }
 }
 
+void read_until(const SceneFields& fields, const std::string& pointer, Stage& stage) {
+  const nlohmann::json& until = fields.at(pointer);
+  if (until.is_object()) {
+    stage.until_mean = until.begin().key();
+    stage.until_standard_error =
+        fields.value<double>(json::child_pointer(pointer, stage.until_mean) + "/standard_error");
+    return;
+  }
+  stage.until_at_rest = until == "at_rest";
+  stage.until_equilibrium = until == "equilibrium";
+  stage.until_parted = until == "parted";
+}
+
 Stage read_stage(const SceneFields& fields, const std::string& pointer, const Scene& scene) {
   Stage stage;
   stage.pointer = pointer;
@@ -216,14 +251,18 @@ Stage read_stage(const SceneFields& fields, const std::string& pointer, const Sc
   fields.attempt([&] {
     if (fields.has(pointer + "/strain")) stage.strain = fields.value<double>(pointer + "/strain");
   });
-  const std::string until = fields.value_or(pointer + "/until", std::string());
-  stage.until_at_rest = until == "at_rest";
-  stage.until_equilibrium = until == "equilibrium";
-  stage.shear_rate = fields.quantity_or(pointer + "/shear_rate", "1/s", range::shear_rate, 0.0);
+  if (fields.has(pointer + "/until")) fields.attempt([&] { read_until(fields, pointer + "/until", stage); });
+  fields.attempt([&] {
+    stage.shear_rate =
+        read_drive(fields, pointer + "/shear_rate", "1/s", range::shear_rate, stage, stage.oscillation.shear_rate);
+  });
   if (fields.has(pointer + "/walls")) read_walls(fields, pointer + "/walls", scene.domain.size.y(), stage);
   stage.start = fields.value_or(pointer + "/start", std::string("impulsive")) == "developed" ? WallStart::developed
                                                                                              : WallStart::impulsive;
-  stage.pressure_gradient.x() = fields.quantity_or(pointer + "/pressure_gradient", "Pa/m", range::force_density, 0.0);
+  fields.attempt([&] {
+    stage.pressure_gradient.x() = read_drive(fields, pointer + "/pressure_gradient", "Pa/m", range::force_density,
+                                             stage, stage.oscillation.pressure_gradient);
+  });
   if (fields.has(pointer + "/mean_velocity")) {
     stage.mean_velocity = fields.quantity(pointer + "/mean_velocity", "m/s", range::velocity);
   }

@@ -43,6 +43,12 @@ double integral_of_magnitude(double base, double amplitude, double phase) {
 double StageSetting::strain_after(long steps) const {
   const auto time = static_cast<double>(steps);
   if (!oscillation.any()) return std::abs(shear_rate) * time;
+  if (oscillation.ramp != 0) {
+    // Twice the integral of |rate|, of a rate that changes evenly: rate |rate| over its change in a step.
+    const auto twice = [](double rate) { return rate * std::abs(rate); };
+    const double first = shear_rate - oscillating_rate, change = 2 * oscillating_rate / oscillation.ramp;
+    return change == 0 ? std::abs(shear_rate) * time : (twice(first + change * time) - twice(first)) / (2 * change);
+  }
   const double omega = 2 * std::numbers::pi * oscillation.frequency;
   return integral_of_magnitude(shear_rate, oscillating_rate, omega * time) / omega;
 }
@@ -78,7 +84,7 @@ StageSetting make_stage_setting(const Scene& scene, int index) {
   }
   setting.dimension = scene.domain.dimension();
 
-  if (stage.oscillates()) {
+  if (stage.changes()) {
     const Oscillation& added = stage.oscillation;
     const double together = setting.units.to_lattice(added.mean_wall_speed, units::dimension::velocity);
     setting.oscillating_rate = setting.units.to_lattice(added.shear_rate, units::dimension::rate);
@@ -86,7 +92,8 @@ StageSetting make_stage_setting(const Scene& scene, int index) {
     setting.oscillation = {
         .walls = {together - against, together + against},
         .body_force_x = setting.units.to_lattice(added.pressure_gradient, units::dimension::force_density),
-        .frequency = setting.units.to_lattice(added.frequency, units::dimension::rate)};
+        .frequency = setting.units.to_lattice(added.frequency, units::dimension::rate),
+        .ramp = added.ramp ? *stage.duration / setting.units.time : 0};
   }
 
   double steps = std::numeric_limits<double>::infinity();

@@ -30,7 +30,7 @@ std::string why_no_exact_flow(const Quantity& quantity, const scene::Scene& scen
                               bool first) {
   if (quantity.poiseuille && scene::driving_force(stage, scene).x() == 0)
     return "nothing drives the fluid along x in the stage " + stage.name;
-  if (stage.oscillates()) return "what drives the stage " + stage.name + " oscillates";
+  if (stage.changes()) return "what drives the stage " + stage.name + " changes in time";
   if (stage.mean_wall_speed != 0) return "the walls of the stage " + stage.name + " have a mean speed";
   if (quantity.poiseuille && stage.shear_rate != 0) return "the walls move in the stage " + stage.name;
   if (!quantity.poiseuille && stage.shear_rate == 0) return "the walls do not move in the stage " + stage.name;

@@ -404,8 +404,8 @@ class Run(Outputs):
     @property
     def results(self) -> pandas.DataFrame:
         """What came out: `value`, `error` and `how` the error was found, in SI, for each quantity (index). With error bars
-        these are all; without, means in time over the second half of the last stage with their standard error (nan where
-        there are too few outputs), and the cells' mean deformation and, where cells attract each other, the number of
+        these are all; without, means of the last stage with their standard error (Outputs.statistics; of what is not
+        steady the mean in time over its second half, whose error is nan), and the cells' mean deformation and, where cells attract each other, the number of
         aggregates at the end, whose error is not known (nan)."""
         import pandas
         bars = self.error_bars
@@ -413,7 +413,6 @@ class Run(Outputs):
             return bars
         last = self.stage(self.stages[-1])
         series = last.series
-        told = self.summary["rheology"][-1]["means"] if self.finished and self.summary["rheology"] else {}
         attracting = bool(self.summary.get("contacts", {}).get("attracting"))
         empty = last.mean("cell_free_layer_empty").value if "cell_free_layer_empty" in series else math.nan
         rows: dict[str, tuple[float, float, str]] = {}
@@ -427,9 +426,9 @@ class Run(Outputs):
             if column not in series or series[column].isna().all() or (column.startswith("aggregate") and not attracting) or \
                     (column.startswith("cell_free_layer") and not empty < MOST_EMPTY_COLUMNS):
                 continue
-            mean = told.get(column)
-            rows[column] = (*((mean["mean"], math.nan if mean["error"] is None else mean["error"]) if mean else last.mean(column)),
-                            "mean of the last stage's second half, standard error from four parts; no error bar")
+            known = last.statistics(column)
+            rows[column] = (known.value, known.error, f"mean of the last stage from {known.begin:.4g} s on; no error bar") \
+                if known.steady else (last.mean(column).value, math.nan, f"mean of the last stage's second half; {known.verdict}")
         return pandas.DataFrame.from_dict(rows, orient="index", columns=["value", "error", "how"]).rename_axis("quantity")
 
     @property

@@ -1,12 +1,14 @@
 #include "oscillation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
 
 namespace rouleau::core {
 
-double Oscillation::sine(double t) const {
+double Oscillation::at(double t) const {
+  if (ramp != 0) return std::clamp(2 * t / ramp - 1, -1.0, 1.0);
   const double periods = frequency * t;
   return std::sin(2 * std::numbers::pi * (periods - std::floor(periods)));
 }

@@ -69,6 +69,8 @@ FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const Cells& cel
     throw std::invalid_argument("cells in layers take neither the semi-implicit step nor the slip correction");
   if (!setup.layers.empty() && setup.developed && setup.oscillation.any())
     throw std::invalid_argument("the developed oscillation of layers is not known");
+  if (setup.developed && setup.oscillation.ramp != 0)
+    throw std::invalid_argument("what a ramp begins with is not developed");
   if (setup.collision.table == nullptr) throw std::invalid_argument("a fluid needs a collision operator");
   FluidSetting<D> setting{.domain = setup.domain,
                           .relaxation_rate = 1 / setup.tau,
@@ -281,7 +283,7 @@ template <class T, class Set>
 void Solver<T, Set>::oscillate(long steps) {
   const Oscillation& oscillation = setup_.oscillation;
   if (!oscillation.any()) return;
-  const double at = static_cast<double>(steps), wall = oscillation.sine(at + 0.5), force = oscillation.sine(at);
+  const double at = static_cast<double>(steps), wall = oscillation.at(at + 0.5), force = oscillation.at(at);
   fluid_.set_drive(
       {setup_.walls.lower + wall * oscillation.walls.lower, setup_.walls.upper + wall * oscillation.walls.upper},
       setup_.body_force_x + force * oscillation.body_force_x);

@@ -39,19 +39,22 @@ TEST_CASE("a run says how it ended, what it cost, when the largest rouleau forme
                                event(8.75, 7.44, middle), event(10, 7.5, apart), event(12.5, 7.625, middle),
                                event(13, 7.65, apart)});
   summary["rheology"] = {
-      {{"stage", "rest"}, {"means", {{"relative_viscosity", nullptr}}}},
-      {{"stage", "shear"}, {"means", {{"relative_viscosity", {{"mean", 1.17471}, {"deviation", 0.0309}}}}}}};
+      {{"stage", "rest"}, {"statistics", Json::object()}},
+      {{"stage", "shear"},
+       {"statistics",
+        {{"relative_viscosity", {{"verdict", "steady"}, {"mean", 1.17471}, {"bar_95", 0.0309}, {"from_s", 0.25}}}}}}};
   CHECK(closing(summary) ==
         std::vector<std::string>{
             "completed after 1000 steps in 15 s (1 thread, 1322 MLUPS): 7.75 s simulated, strain 15",
             "rouleau of 4 at 2.1 s; broke at strain 8.75; all single from strain 13",
-            "relative viscosity 1.17, without an error bar (--error-bar); its outputs have a standard deviation of "
-            "0.031 over the second half of shear; largest area drift 0.1 %"});
-  summary["rheology"][1]["means"]["relative_viscosity"]["deviation"] = nullptr;  // of a single output
-  CHECK(closing(summary).back() == "largest area drift 0.1 %");
-  // The error bar of the viscosity has a line of its own.
-  summary["error_bars"] = {{"relative_viscosity", {{"value", 1.17471}, {"error", 0.004}}}};
-  CHECK(closing(summary).back() == "largest area drift 0.1 %");
+            "relative viscosity 1.17 +- 0.04 (95 %; of chance, not of the lattice) in shear from 0.25 s on; largest "
+            "area drift 0.1 %"});
+  Json& known = summary["rheology"][1]["statistics"]["relative_viscosity"];
+  known["mean"] = nullptr;
+  known["verdict"] = "not steady: it rises or falls all the time";
+  CHECK(closing(summary).back() ==
+        "no mean of the relative viscosity in shear: not steady: it rises or falls all the time; largest area drift "
+        "0.1 %");
 }
 
 TEST_CASE("what becomes of a rouleau is said as it happened") {

@@ -102,35 +102,34 @@ TEST_CASE("means in time do not depend on where outputs fall, nor on one that is
   CHECK(mean_of({0, 1, 2}, 1.5)["mean"] == 1.0);
   CHECK(mean_of({0, 1, 2}, 1.5)["deviation"].is_null());
   CHECK(mean_of({0, 1, 2}, 5).is_null());
-  // Parts from 1 to 2 have the means 1.875, 1.625, 1.375 and 1.125, wherever outputs fall; fewer of these have no
-  // error.
-  const double error = std::sqrt(0.3125 / 3 / 4);
-  CHECK(mean_of({0, 0.9, 1.1, 1.2, 1.3, 2}, 0)["error"].get<double>() == Approx(error).epsilon(1e-12));
-  CHECK(mean_of({0, 1, 1.25, 1.5, 1.75, 2}, 0)["error"].get<double>() == Approx(error).epsilon(1e-12));
-  CHECK(mean_of({0, 0.9, 1.1, 1.2, 2}, 0)["error"].is_null());
 }
 
-TEST_CASE("a mean of what still rises or falls says so, and one of what goes up and down does not") {
-  const auto trend = [](const std::function<double(double)>& value, int outputs = 41) {
-    RheologyHistory history;
-    for (int k = 0; k < outputs; ++k) {
-      const double time = 2.0 * k / (outputs - 1);
-      Snapshot s = at(0, time, time, {0});
-      s.relative_viscosity = value(time - 1);  // 0 to 1 in the second half
-      history.follow(s);
-    }
-    return history.stages()[0]["means"]["relative_viscosity"]["trend"];
+TEST_CASE("a stage says what it knows of a mean, in its own time, and whether its aggregates have parted") {
+  RheologyHistory history;
+  const auto follow = [&](int stage, double time, double value, std::vector<int> labels) {
+    Snapshot s = at(stage, time, time, std::move(labels));
+    s.relative_viscosity = value;
+    history.follow(s);
   };
-  const auto wave = [](double t, double periods) { return std::sin(2 * std::numbers::pi * periods * t); };
-  CHECK(trend([](double t) { return 2.2 + 0.3 * t; }) == "rising");
-  CHECK(trend([](double t) { return 2.2 - 0.3 * t; }) == "falling");
-  CHECK(trend([&](double t) { return 2.2 + 0.3 * t + 0.05 * wave(t, 3); }) == "rising");
-  CHECK(trend([](double t) { return 2 - std::exp(-2 * t); }) == "rising");
-  CHECK(trend([](double) { return 2.2; }).is_null());
-  CHECK(trend([](double t) { return 2.2 + 0.01 * t; }).is_null());  // half a percent
-  for (const double periods : {1.0, 1.5, 2.0, 5.0})
-    CHECK(trend([&](double t) { return 2.2 + wave(t, periods); }).is_null());
-  CHECK(trend([](double t) { return 2.2 + 0.3 * t; }, 5).is_null());  // three outputs
+  for (int k = 0; k < 5; ++k) follow(0, k, 7, {0, 0, 2});
+  CHECK_FALSE(history.parted());
+  CHECK_FALSE(history.knows("relative_viscosity", 1e9));                                 // too few
+  const auto noise = [](int k) { return std::fmod(k * std::numbers::phi, 1.0) - 0.5; };  // evenly spread, uncorrelated
+  for (int k = 0; k < 400; ++k) follow(1, 5 + 0.5 * k, 2 + noise(k), {0, 0, k < 399 ? 0 : 2});
+  const auto known = history.stages()[1]["statistics"]["relative_viscosity"];
+  CHECK(known["verdict"] == "steady");
+  CHECK(known["mean"].get<double>() == Approx(2).margin(0.02));
+  CHECK(known["from_s"].get<double>() < 100);
+  CHECK(history.knows("relative_viscosity", 1.001 * known["standard_error"].get<double>()));
+  CHECK_FALSE(history.knows("relative_viscosity", 0.999 * known["standard_error"].get<double>()));
+  CHECK_FALSE(history.knows("flow_rate_m2_per_s", 1e9));  // it has no value
+  CHECK_FALSE(history.stages()[1]["statistics"].contains("flow_rate_m2_per_s"));
+  CHECK_FALSE(history.parted());  // the stage began with {0, 1} and 2 alone
+  follow(1, 300, 2, {0, 1, 1});
+  CHECK(history.parted());
+  RheologyHistory single;
+  for (const double time : {0.0, 1.0}) single.follow(at(0, time, time, {0, 1}));
+  CHECK_FALSE(single.parted());  // nothing was together
 }
 
 TEST_CASE("rates of tank treading and tumbling are those of the last whole turns of the outline") {
