@@ -140,3 +140,32 @@ TEST_CASE("wall stress and shear rate of a scene that oscillates have the exact 
   // Four periods of |5 + 50 sin|: more than 4 x 50 x 2/pi of a period each, by (5/50)^2/2.
   CHECK(run.summary["strain"].get<double>() == Approx(0.02 * 50 * 2 / pi * (1 + 0.5 * 0.1 * 0.1)).epsilon(1e-4));
 }
+
+TEST_CASE("in a ramp of the shear rate the walls take the exact stress, and strain is the integral of the rate",
+          "[oscillation]") {
+  // 20 um high, 1e-6 m2/s, from -10 to 40 1/s in 40 ms with a fluid 4 times heavier: it follows after 1.6 ms.
+  const SceneRun run = run_scene(
+      scenes + "/capsule.json",
+      {"/cells=[]", "/domain/size=[\"5 um\", \"20 um\"]", "/domain/nodes=[8, 32]", "/fluid/viscosity=\"1 cP\"",
+       "/numerics/density_factor=4", "/output/cells={\"seconds\": \"1 ms\"}",
+       R"(/stages=[{"name": "ramp", "shear_rate": {"from": "-10 1/s", "to": "40 1/s"}, "duration": "40 ms"}])"});
+  REQUIRE(run.summary["status"] == "completed");
+  const double height = 20e-6, nu = 1e-6 / 4, viscosity = 1e-3, growth = 50 / 0.04;
+  const double step = run.summary["simulated_time_s"].get<double>() / run.summary["steps"].get<double>();
+  const auto time = run.series_column("time_s"), rate = run.series_column("shear_rate_1_per_s"),
+             relative = run.series_column("relative_viscosity"), upper = run.series_column("wall_stress_upper_Pa");
+  int compared = 0;
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    const double wanted = -10 + growth * (time[i] - step / 2);
+    CHECK(rate[i] == Approx(wanted).margin(1e-9 * 40));
+    if (time[i] < 0.01) continue;
+    // du/dt = nu d2u/dy2 with walls that speed up evenly: the slope there is the rate and growth H^2/(12 nu).
+    const double slope = wanted + growth * height * height / (12 * nu);
+    CHECK(-upper[i] == Approx(viscosity * slope).epsilon(2e-3));
+    CHECK(relative[i] * rate[i] == Approx(slope).epsilon(2e-3));
+    ++compared;
+  }
+  CHECK(compared >= 30);
+  // 8 ms at 5 1/s in the mean, then 32 ms at 20 1/s.
+  CHECK(run.summary["strain"].get<double>() == Approx(0.008 * 5 + 0.032 * 20).epsilon(1e-3));
+}

@@ -229,6 +229,35 @@ TEST_CASE("the amplitude of an oscillation is of what drives the stage") {
   CHECK_FALSE(stage(R"("shear_rate": "3 1/s")").oscillates());
 }
 
+TEST_CASE("a ramp of what drives a stage is kept as its mean and half of what it rises by") {
+  const auto stage = [](const std::string& keys) {
+    return read(contract_scene, {"/stages/1={\"name\": \"flow\", \"duration\": \"1 s\", " + keys + "}", "/output={}"})
+        .stages[1];
+  };
+  const Stage shear = stage(R"("shear_rate": {"from": "50 1/s", "to": "2 1/s"})");
+  CHECK(shear.shear_rate == 26);
+  CHECK(shear.oscillation.shear_rate == -24);
+  CHECK(shear.changes());
+  CHECK_FALSE(shear.oscillates());
+  CHECK_FALSE(shear.shears_steadily());
+  const Stage driven = stage(R"("pressure_gradient": {"from": 0, "to": "1 kPa/m"})");
+  CHECK(driven.pressure_gradient.x() == about(500));
+  CHECK(driven.oscillation.pressure_gradient == about(500));
+}
+
+TEST_CASE("a stage may end by a mean that is known, or once aggregates have parted") {
+  const auto stage = [](const std::string& until) {
+    return read(contract_scene, {R"(/stages/1={"name": "flow", "shear_rate": 5, "strain": 9, "until": )" + until + "}"})
+        .stages[1];
+  };
+  const Stage mean = stage(R"({"relative_viscosity": {"standard_error": 0.02}})");
+  CHECK(mean.until_mean == "relative_viscosity");
+  CHECK(mean.until_standard_error == 0.02);
+  CHECK(mean.may_end_early());
+  CHECK(stage(R"("parted")").until_parted);
+  CHECK_FALSE(read(contract_scene).stages[1].may_end_early());
+}
+
 TEST_CASE("a model is swapped with its parameters by set") {
   const auto scene = read(contract_scene, {"/fluid/collision={\"model\": \"bgk\"}"});
   CHECK(scene.fluid.collision.model == "bgk");
