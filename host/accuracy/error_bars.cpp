@@ -1,9 +1,7 @@
 #include "error_bars.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "base/text.hpp"
@@ -126,12 +124,6 @@ int decimals_of(double error) {
   return static_cast<int>(-exponent) + (begins_with_one ? 1 : 0);
 }
 
-std::string fixed(double value, int decimals) {
-  std::array<char, 512> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", std::max(0, decimals), value);
-  return text.data();
-}
-
 /// Relative share of the lattice in the deformation; 0 where there is none.
 double shape_error(const std::vector<Quantity>& run, const Companions& companions,
                    const std::vector<Measured>& measured) {
@@ -219,10 +211,10 @@ std::string with_error(double value, double error) {
     const double power = std::pow(10, std::floor(std::log10(std::max(std::abs(value), error))));
     if (power != 1) return "(" + with_error(value / power, error / power) + ") x " + number(power);
   }
-  const int decimals = decimals_of(error);
-  const double digit = std::pow(10, -decimals);
+  const int last = decimals_of(error), shown = std::max(0, last);
+  const double digit = std::pow(10, -last);
   const double rounded = std::ceil(error / digit * (1 - 1e-12)) * digit;
-  return fixed(value, decimals) + " +- " + fixed(rounded, decimals);
+  return decimals(value, shown) + " +- " + decimals(rounded, shown);
 }
 
 std::vector<std::string> sentences(const std::vector<ErrorBar>& bars) {

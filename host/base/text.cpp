@@ -143,6 +143,12 @@ std::string number(double value, int digits) {
   return text.data();
 }
 
+std::string decimals(double value, int digits) {
+  std::array<char, 512> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
+  return text.data();
+}
+
 std::string rounded(double value, int digits) {
   const bool whole = std::abs(value) >= std::pow(10, digits) && std::abs(value) < 1e6;
   return whole ? number(std::round(value), 7) : number(value, digits);

@@ -32,6 +32,9 @@ std::string misspelt(std::string_view word, const std::vector<std::string>& cand
 /// A number as short as it can be read back with six digits, or with `digits`.
 std::string number(double value, int digits = 6);
 
+/// With so many digits after the point.
+std::string decimals(double value, int digits);
+
 /// To `digits` significant digits; a number with more digits before the point is written whole, not with a power of
 /// ten, up to a million.
 std::string rounded(double value, int digits);

@@ -262,17 +262,6 @@ void BlockMeans::end_row() {
   rows_before_ = rows_;
 }
 
-std::array<ScalarField, 2> mean_vectors(const hdf5::File& file, const files::FieldNodes& grid,
-                                        const std::string& dataset, std::size_t most) {
-  BlockMeans u(grid.nx, grid.ny, most), v = u;
-  FieldRows rows(file, grid, dataset);
-  rows.for_each(false, [&](std::size_t y) {
-    u.add_row([&](std::size_t x) { return rows.at(x, y, 0); });
-    v.add_row([&](std::size_t x) { return rows.at(x, y, 1); });
-  });
-  return {u.means(), v.means()};
-}
-
 std::vector<unsigned char> quantised(const std::vector<double>& values, double scale, bool is_signed) {
   std::vector<unsigned char> bytes;
   bytes.reserve(values.size());

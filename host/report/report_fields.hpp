@@ -62,10 +62,6 @@ class BlockMeans {
   std::vector<double> sums_;  ///< of a row of blocks
 };
 
-/// Means of the first two components of a field of vectors over at most `most` blocks. Throws Error(input_output).
-std::array<ScalarField, 2> mean_vectors(const hdf5::File& file, const files::FieldNodes& grid,
-                                        const std::string& dataset, std::size_t most);
-
 /// Bytes as described above.
 std::vector<unsigned char> quantised(const std::vector<double>& values, double scale, bool is_signed);
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <map>
+
+#include "base/text.hpp"
 
 namespace rouleau::stability {
 
@@ -114,9 +114,7 @@ class Search {
 
 double rounded_value(double value, bool whole) {
   if (whole) return std::round(value);
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return std::strtod(text, nullptr);
+  return std::stod(number(value));
 }
 
 EdgeSearch find_edges(const SearchRange& range, const Judge& judge) { return Search(range, judge).run(); }

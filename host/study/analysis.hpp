@@ -111,7 +111,6 @@ std::vector<StudySentence> sentences_of(const StudyData& study, std::size_t quan
 std::string name_of(const StudyData& study, const std::vector<int>& setting);
 /// "0.4 %", "0.12 deg", "3e-05".
 std::string error_in_words(const Quantity& quantity, double error);
-/// "0.8 s", "4.5 min", "2.1 h".
 /// Index of the point with this setting.
 std::optional<std::size_t> find_point(const StudyData& study, const std::vector<int>& setting);
 

@@ -157,10 +157,6 @@ double carried_uncertainty(const Triple& t, double order) {
 
 }  // namespace
 
-double Extrapolation::error_at(double spacing) const {
-  return std::abs(coefficient) * std::pow(spacing, std::isfinite(order) ? order : 1.0);
-}
-
 double observed_order(const Triple& grids) {
   const double fine = grids[1].value - grids[0].value, coarse = grids[2].value - grids[1].value;
   if (fine == 0) return coarse == 0 ? undefined : std::numeric_limits<double>::infinity();

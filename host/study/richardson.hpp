@@ -38,9 +38,6 @@ struct Extrapolation {
   double coefficient;  ///< C, in values per spacing^p; p is 1 where no order is to be seen
   std::string remark;  ///< empty where the grids are in the asymptotic range; else why not, for the user
   std::vector<std::size_t> used;  ///< indices of the grids, finest first
-
-  /// What the fit says of the distance |f(h) - f0| on a grid: |C| h^p. NaN where there is no limit.
-  [[nodiscard]] double error_at(double spacing) const;
 };
 
 /// Order p at which the differences of three values, finest first, fit C h^p. Infinite when the finer two are equal

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <functional>
+#include <iomanip>
 #include <set>
+#include <sstream>
 #include <type_traits>
 #include <utility>
 
+#include "base/text.hpp"
 #include "core/domain/halo.hpp"
 #include "core/fluid/lattice.hpp"
 #include "core/membrane/membranes.hpp"
@@ -264,17 +266,46 @@ std::vector<RankCost> costs_of(const Plan& plan, const core::Decomposition<D>& b
   return ranks;
 }
 
-std::string in_line(const char* name, const std::vector<RankCost>& ranks,
-                    const std::function<double(const RankCost&)>& value, const char* format) {
-  double least = value(ranks.front()), most = least, sum = 0;
-  for (const RankCost& rank : ranks) {
-    least = std::min(least, value(rank));
-    most = std::max(most, value(rank));
-    sum += value(rank);
-  }
-  std::array<char, 128> text{};
-  std::snprintf(text.data(), text.size(), format, name, least, sum / static_cast<double>(ranks.size()), most);
-  return text.data();
+/// A number of a rank, as people read it.
+struct Row {
+  const char* name;
+  std::function<double(const RankCost&)> value;
+  int decimals;
+};
+
+const std::vector<Row>& rows() {
+  const auto whole = [](long RankCost::*count) {
+    return [count](const RankCost& rank) { return static_cast<double>(rank.*count); };
+  };
+  const auto scaled = [](double RankCost::*amount, double by) {
+    return [amount, by](const RankCost& rank) { return rank.*amount * by; };
+  };
+  static const std::vector<Row> table{
+      {"nodes of the block", whole(&RankCost::nodes), 0},
+      {"cells", whole(&RankCost::cells), 0},
+      {"membrane nodes", whole(&RankCost::membrane_nodes), 0},
+      {"membrane nodes of ghosts", whole(&RankCost::ghost_nodes), 0},
+      {"neighbours", whole(&RankCost::neighbours), 0},
+      {"messages of a step", whole(&RankCost::messages), 0},
+      {"populations, kB a step", scaled(&RankCost::population_bytes, 1e-3), 2},
+      {"velocities, kB", scaled(&RankCost::velocity_bytes, 1e-3), 2},
+      {"positions of cells, kB", scaled(&RankCost::position_bytes, 1e-3), 2},
+      {"forces of cells, kB", scaled(&RankCost::force_bytes, 1e-3), 2},
+      {"velocities of cells, kB", scaled(&RankCost::node_velocity_bytes, 1e-3), 2},
+      {"received, kB", scaled(&RankCost::received_bytes, 1e-3), 2},
+      {"memory, MB", scaled(&RankCost::memory_bytes, 1e-6), 2},
+      {"a step's computing, us", scaled(&RankCost::step_s, 1e6), 2},
+      {"sharing it with others, us", scaled(&RankCost::sharing_s, 1e6), 2},
+  };
+  return table;
+}
+
+std::string in_line(const Row& row, const std::vector<double>& values) {
+  std::ostringstream line;
+  line << "  " << std::left << std::setw(34) << row.name << std::right << std::fixed << std::setprecision(row.decimals);
+  for (const double value : values) line << ' ' << std::setw(12) << value;
+  line << '\n';
+  return line.str();
 }
 
 }  // namespace
@@ -293,63 +324,33 @@ double balance(const std::vector<RankCost>& ranks) {
 }
 
 std::string to_text(const std::vector<RankCost>& ranks) {
-  constexpr const char *whole = "  %-34s %12.0f %12.0f %12.0f\n", *decimal = "  %-34s %12.2f %12.2f %12.2f\n";
-  const auto number = [](auto RankCost::*member) {
-    return [member](const RankCost& rank) { return static_cast<double>(rank.*member); };
-  };
-  const auto scaled = [](double RankCost::*member, double by) {
-    return [member, by](const RankCost& rank) { return rank.*member * by; };
-  };
-  std::array<char, 128> text{};
-  std::snprintf(text.data(), text.size(),
-                "\n%zu ranks                                   least         mean         most\n", ranks.size());
-  std::string out = text.data();
-  out += in_line("nodes of the block", ranks, number(&RankCost::nodes), whole);
-  out += in_line("cells", ranks, number(&RankCost::cells), whole);
-  out += in_line("membrane nodes", ranks, number(&RankCost::membrane_nodes), whole);
-  out += in_line("membrane nodes of ghosts", ranks, number(&RankCost::ghost_nodes), whole);
-  out += in_line("neighbours", ranks, number(&RankCost::neighbours), whole);
-  out += in_line("messages of a step", ranks, number(&RankCost::messages), whole);
-  out += in_line("populations, kB a step", ranks, scaled(&RankCost::population_bytes, 1e-3), decimal);
-  out += in_line("velocities, kB", ranks, scaled(&RankCost::velocity_bytes, 1e-3), decimal);
-  out += in_line("positions of cells, kB", ranks, scaled(&RankCost::position_bytes, 1e-3), decimal);
-  out += in_line("forces of cells, kB", ranks, scaled(&RankCost::force_bytes, 1e-3), decimal);
-  out += in_line("velocities of cells, kB", ranks, scaled(&RankCost::node_velocity_bytes, 1e-3), decimal);
-  out += in_line("received, kB", ranks, scaled(&RankCost::received_bytes, 1e-3), decimal);
-  out += in_line("memory, MB", ranks, scaled(&RankCost::memory_bytes, 1e-6), decimal);
-  out += in_line("a step's computing, us", ranks, scaled(&RankCost::step_s, 1e6), decimal);
-  out += in_line("sharing it with others, us", ranks, scaled(&RankCost::sharing_s, 1e6), decimal);
-  std::snprintf(text.data(), text.size(), "  balance %.2f: the ranks' mean computing time over the largest\n",
-                balance(ranks));
-  return out + text.data();
+  std::string out = "\n" + std::to_string(ranks.size()) +
+                    " ranks                                   least         mean         most\n";
+  for (const Row& row : rows()) {
+    double least = row.value(ranks.front()), most = least, sum = 0;
+    for (const RankCost& rank : ranks) {
+      least = std::min(least, row.value(rank));
+      most = std::max(most, row.value(rank));
+      sum += row.value(rank);
+    }
+    out += in_line(row, {least, sum / static_cast<double>(ranks.size()), most});
+  }
+  return out + "  balance " + decimals(balance(ranks), 2) + ": the ranks' mean computing time over the largest\n";
 }
 
 std::string to_text(const RankCost& cost, int rank, const Blocks& blocks) {
-  std::string place;
+  std::string out = "\nRank " + std::to_string(rank) + ":";
   std::visit(
       [&](const auto& of_lattice) {
         const auto block = of_lattice.domain(rank).block;
         for (std::size_t k = 0; k < block.begin.size(); ++k)
-          place += (k == 0 ? " nodes " : ", ") + std::to_string(block.begin[k]) + " to " +
-                   std::to_string(block.end[k] - 1) + " along " + "xyz"[k];
+          out += (k == 0 ? " nodes " : ", ") + std::to_string(block.begin[k]) + " to " +
+                 std::to_string(block.end[k] - 1) + " along " + "xyz"[k];
       },
       blocks);
-  std::array<char, 1024> text{};
-  std::snprintf(text.data(), text.size(),
-                "\nRank %d:%s\n"
-                "  %-34s %12ld\n  %-34s %12ld\n  %-34s %12ld\n  %-34s %12ld\n  %-34s %12ld\n  %-34s %12ld\n"
-                "  %-34s %12.2f\n  %-34s %12.2f\n  %-34s %12.2f\n  %-34s %12.2f\n  %-34s %12.2f\n"
-                "  %-34s %12.2f\n  %-34s %12.2f\n  %-34s %12.2f\n  %-34s %12.2f\n",
-                rank, place.c_str(),  //
-                "nodes of the block", cost.nodes, "cells", cost.cells, "membrane nodes", cost.membrane_nodes,
-                "membrane nodes of ghosts", cost.ghost_nodes, "neighbours", cost.neighbours, "messages of a step",
-                cost.messages,  //
-                "populations, kB a step", cost.population_bytes / 1e3, "velocities, kB", cost.velocity_bytes / 1e3,
-                "positions of cells, kB", cost.position_bytes / 1e3, "forces of cells, kB", cost.force_bytes / 1e3,
-                "velocities of cells, kB", cost.node_velocity_bytes / 1e3,  //
-                "received, kB", cost.received_bytes / 1e3, "memory, MB", cost.memory_bytes / 1e6,
-                "a step's computing, us", cost.step_s * 1e6, "sharing it with others, us", cost.sharing_s * 1e6);
-  return text.data();
+  out += "\n";
+  for (const Row& row : rows()) out += in_line(row, {row.value(cost)});
+  return out;
 }
 
 }  // namespace rouleau::plan

@@ -56,7 +56,8 @@ TEST_CASE("limit and order of C h^p are exact, whatever the ratios of the grids"
   // The order is found by bisection or a search to 1e-9; round-off of the values is amplified a thousand times.
   CHECK(e.order == Approx(order).margin(1e-6));
   CHECK(e.limit == Approx(0.25).margin(1e-7));
-  CHECK(e.error_at(0.5) == Approx(std::abs(coefficient) * std::pow(0.5, order)).epsilon(1e-4));
+  CHECK(std::abs(e.coefficient) * std::pow(0.5, e.order) ==
+        Approx(std::abs(coefficient) * std::pow(0.5, order)).epsilon(1e-4));
   const double finest = *std::min_element(spacings.begin(), spacings.end());
   // The safety factor of the grid convergence index, and no less; less than that only where four grids agree.
   CHECK(e.uncertainty >=
@@ -77,7 +78,7 @@ TEST_CASE("values that do not change have themselves as limit, and no order", "[
   CHECK(e.limit == 4);
   CHECK(e.uncertainty == 0);
   CHECK(std::isnan(e.order));
-  CHECK(e.error_at(2) == 0);
+  CHECK(e.coefficient == 0);
 }
 
 TEST_CASE("differences below the values' own uncertainty tell nothing of an order", "[richardson]") {
@@ -120,7 +121,7 @@ TEST_CASE("what is outside the asymptotic range says so and is doubted", "[richa
     CHECK(e.convergence == Convergence::diverging);
     CHECK(std::isnan(e.limit));
     CHECK(std::isnan(e.uncertainty));
-    CHECK(std::isnan(e.error_at(1)));
+    CHECK(std::isnan(e.coefficient));
     CHECK(remark_has(e, "do not shrink"));
   }
 }
