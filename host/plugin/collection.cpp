@@ -5,16 +5,10 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "embedded_schemas.hpp"
 #include "json/document.hpp"
 #include "json/schema.hpp"
 
 namespace rouleau::plugin {
-
-const nlohmann::json& collection_schema() {
-  static const auto schema = nlohmann::json::parse(collection_schema_text);
-  return schema;
-}
 
 Collection read_collection(const std::filesystem::path& file) {
   const json::Document document = json::Document::read(file);

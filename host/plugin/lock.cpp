@@ -6,7 +6,6 @@
 
 #include "base/sha256.hpp"
 #include "base/text.hpp"
-#include "embedded_schemas.hpp"
 #include "json/document.hpp"
 #include "json/schema.hpp"
 #include "json/shown.hpp"
@@ -43,11 +42,6 @@ std::string lock_text(std::vector<LockedPlugin> plugins) {
                                {"manifest_sha256", plugin.manifest_sha256}});
   }
   return lock.dump(2) + '\n';
-}
-
-const nlohmann::json& lock_schema() {
-  static const auto schema = nlohmann::json::parse(lock_schema_text);
-  return schema;
 }
 
 Lock read_lock(const fs::path& file, const std::string& renewal) {

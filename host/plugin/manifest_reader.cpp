@@ -8,7 +8,6 @@
 
 #include "base/input_file.hpp"
 #include "base/sha256.hpp"
-#include "embedded_schemas.hpp"
 #include "json/document.hpp"
 #include "json/schema.hpp"
 #include "manifest_fields.hpp"
@@ -59,11 +58,6 @@ json::Document read_manifest_document(const fs::path& file) {
   } catch (const Error& error) {
     throw Error(Cause::plugin_refused, error.place(), error.problem(), error.remedy());
   }
-}
-
-const Json& manifest_schema() {
-  static const auto schema = Json::parse(manifest_schema_text);
-  return schema;
 }
 
 Manifest read_manifest(const json::Document& document, const fs::path& file, const units::Units& units) {

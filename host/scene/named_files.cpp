@@ -6,7 +6,6 @@
 #include "base/sha256.hpp"
 #include "base/synonyms.hpp"
 #include "base/text.hpp"
-#include "embedded_schemas.hpp"
 #include "json/json_pointer.hpp"
 #include "json/schema.hpp"
 
@@ -55,11 +54,6 @@ std::vector<std::string> cell_names() {
     if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
   return names;
-}
-
-const nlohmann::json& cell_schema() {
-  static const nlohmann::json schema = nlohmann::json::parse(cell_schema_text);
-  return schema;
 }
 
 ShippedCell shipped_cell(const std::string& name, const Place& place) {

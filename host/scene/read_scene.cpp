@@ -8,7 +8,6 @@
 
 #include "base/text.hpp"
 #include "driving_flow.hpp"
-#include "embedded_schemas.hpp"
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
 #include "json/schema.hpp"
@@ -326,11 +325,6 @@ std::vector<std::filesystem::path> read_plugin_dirs(const SceneFields& fields, c
 }
 
 }  // namespace
-
-const nlohmann::json& scene_schema() {
-  static const auto schema = nlohmann::json::parse(scene_schema_text);
-  return schema;
-}
 
 void check_membrane_nodes(const Scene& scene) {
   std::int64_t nodes = 0;

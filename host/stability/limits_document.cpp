@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 
 #include "base/text.hpp"
-#include "embedded_schemas.hpp"
 #include "json/json_pointer.hpp"
 #include "json/put_value.hpp"
 #include "json/schema.hpp"
@@ -135,9 +133,7 @@ HealthCriteria read_criteria(const Json& given) {
 
 Json LimitsParameter::written(double value) const {
   if (unit.empty()) return range.whole ? Json(std::lround(value)) : Json(value);
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return std::string(text) + ' ' + unit;
+  return number(value) + ' ' + unit;
 }
 
 LimitsFile read_limits(const fs::path& file) {
@@ -155,16 +151,6 @@ LimitsFile read_limits(const fs::path& file) {
   }
   if (root.contains("sound")) limits.criteria = read_criteria(root["sound"]);
   return limits;
-}
-
-const Json& limits_schema() {
-  static const Json schema = trial::with_matrix_definitions(limits_schema_text);
-  return schema;
-}
-
-const Json& limits_result_schema() {
-  static const Json schema = Json::parse(limits_result_schema_text);
-  return schema;
 }
 
 }  // namespace rouleau::stability

@@ -5,7 +5,6 @@
 
 #include "base/synonyms.hpp"
 #include "base/text.hpp"
-#include "embedded_schemas.hpp"
 #include "json/json_pointer.hpp"
 #include "json/schema.hpp"
 
@@ -113,16 +112,6 @@ Study read_study(const fs::path& file) {
   study.repeats = root.value("repeats", study.repeats);
   study.warm_up = root.value("warm_up", study.warm_up);
   return study;
-}
-
-const Json& study_schema() {
-  static const Json schema = trial::with_matrix_definitions(study_schema_text);
-  return schema;
-}
-
-const Json& study_result_schema() {
-  static const Json schema = Json::parse(study_result_schema_text);
-  return schema;
 }
 
 }  // namespace rouleau::study

@@ -4,7 +4,6 @@
 #include <set>
 
 #include "base/text.hpp"
-#include "embedded_schemas.hpp"
 #include "json/json_pointer.hpp"
 #include "json/put_value.hpp"
 #include "units/units.hpp"
@@ -250,18 +249,6 @@ void put_changes(Json& scene, const json::Document& document, const std::string&
   for (const std::string& key : keys_in_order(document, pointer)) {
     put(scene, key, value_at(document, pointer)[key], document.key_place(json::child_pointer(pointer, key)));
   }
-}
-
-Json with_matrix_definitions(std::string_view schema) {
-  std::string text(schema);
-  const std::string elsewhere = "\"matrix.schema.json#/";
-  for (auto at = text.find(elsewhere); at != std::string::npos; at = text.find(elsewhere, at)) {
-    text.replace(at, elsewhere.size(), "\"#/");
-  }
-  Json whole = Json::parse(text);
-  const Json matrix = Json::parse(matrix_schema_text);
-  for (const auto& [name, definition] : matrix["definitions"].items()) whole["definitions"][name] = definition;
-  return whole;
 }
 
 }  // namespace rouleau::trial

@@ -60,7 +60,4 @@ void put_changes(nlohmann::json& scene, const json::Document& document, const st
 std::vector<Setting> refined_settings(const json::Document& document, const std::string& pointer,
                                       const nlohmann::json& base_scene);
 
-/// `schema` with the definitions of matrix.schema.json, to which it may refer as "matrix.schema.json#/definitions/...".
-nlohmann::json with_matrix_definitions(std::string_view schema);
-
 }  // namespace rouleau::trial
