@@ -16,7 +16,7 @@
 #include "plan/ranks/rank_costs.hpp"
 #include "plan/read_scene.hpp"
 #include "plan/solver_setup.hpp"
-#include "plugin/handles.hpp"
+#include "plugin/model.hpp"
 #include "rank_bench.hpp"
 
 namespace rouleau::bench {

@@ -13,7 +13,7 @@
 #include "core/fluid/fluid.hpp"
 #include "measure.hpp"
 #include "plugin/catalog.hpp"
-#include "plugin/handles.hpp"
+#include "plugin/model.hpp"
 
 namespace rouleau::bench {
 

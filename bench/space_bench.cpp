@@ -15,7 +15,7 @@
 #include "core/fluid/periodic.hpp"
 #include "measure.hpp"
 #include "plugin/catalog.hpp"
-#include "plugin/handles.hpp"
+#include "plugin/model.hpp"
 
 namespace rouleau::bench {
 

@@ -14,8 +14,8 @@
 #include "command/process/program.hpp"
 #include "command/process/terminal.hpp"
 #include "observe/observables.hpp"
-#include "run/version.hpp"
-#include "transport/launcher.hpp"
+#include "run/provenance.hpp"
+#include "transport/connection.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "base/text.hpp"
-#include "json/number_or_null.hpp"
+#include "json/shown.hpp"
 
 namespace rouleau::accuracy {
 

@@ -3,10 +3,13 @@
 
 #include <atomic>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "error_bars.hpp"
+#include "json/json.hpp"
+#include "plan/numerics_choice.hpp"
 #include "plugin/catalog.hpp"
 
 namespace rouleau::accuracy {
@@ -32,10 +35,19 @@ Finished finished_run(const std::filesystem::path& directory, const scene::Scene
 /// `scene` is that of the run in the directory, which has completed. Summary.json gets
 ///   error_bars        {name: {value, error, how}}
 ///   error_bar_runs    {wall_s, share_of_run, missing, companions [{role, differs, end, wall_s, message}]}
-///   numerics_choice   if not null, what refinement.hpp keeps of the largest relative error of what is told first
+///   numerics_choice   if not null, what add_measured keeps of the largest relative error of what is told first
 /// Companions run here, one after another, and write tables alone into the directory's companions_folder, which goes
 /// when all is measured. Throws Error(input_output), and Error(bad_input) where another process works in the directory.
 MeasuredErrors measure_errors(const std::filesystem::path& directory, const scene::Scene& scene,
                               const MeasureOptions& options);
+
+/// The target for numerics that are chosen again: as much smaller than what was expected as what was measured is larger
+/// than the target, and a fifth less, for a run that expects to meet its target exactly would miss it half of the time.
+/// 0 where the outputs alone leave more open than the target allows.
+double refined_target(const plan::NumericsChoice& choice, const Worst& worst);
+
+/// What a summary's choice of numerics keeps of the worst error, and what comes back; nothing where it has none.
+void add_measured(nlohmann::json& choice, const std::optional<Worst>& worst);
+std::optional<Worst> measured(const nlohmann::json& choice);
 
 }  // namespace rouleau::accuracy

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "files/csv_reader.hpp"
+#include "files/tables.hpp"
 #include "json/document.hpp"
 #include "json/json.hpp"
 #include "observe/cell_free_layer.hpp"

@@ -1,15 +1,17 @@
 #include "input_file.hpp"
 
 #include <fcntl.h>
+#include <sha2.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
 #include <array>
 #include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <system_error>
 #include <utility>
 
 #include "error.hpp"
-#include "file_fault.hpp"
 
 namespace rouleau {
 
@@ -19,6 +21,32 @@ const char* kind_of(mode_t mode) {
   if (S_ISDIR(mode)) return "a directory";
   if (S_ISFIFO(mode)) return "a pipe";
   return S_ISSOCK(mode) ? "a socket" : "a device";
+}
+
+Remedy remedy(int error) {
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      return {"free some space there, or write to another disk", {Way::elsewhere}};
+    case EFBIG:
+      return {"raise the file size limit (ulimit -f), or write fewer outputs"};
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return {"choose a directory you may write to", {Way::elsewhere}};
+    case ENOENT:
+    case ENOTDIR:
+      return {"check that every part of the path before the last is a directory"};
+    case ELOOP:
+      return {"it is a link, and what it leads to is not this run's to change: remove the link"};
+    case ENXIO:
+      return {"it is a pipe that nobody reads: remove it"};
+    case EMFILE:
+    case ENFILE:
+      return {"close other files, or raise the limit (ulimit -n)"};
+    default:
+      return {"check the disk, or write to another one", {Way::elsewhere}};
+  }
 }
 
 }  // namespace
@@ -76,6 +104,34 @@ std::string InputFile::text() const {
 
 std::string read_input(const std::filesystem::path& file, std::uintmax_t largest) {
   return InputFile(file, largest).text();
+}
+
+void fail_file(const std::filesystem::path& file, const std::string& what, int error) {
+  throw Error(Cause::input_output, Place{file.string()}, what + ": " + std::generic_category().message(error),
+              remedy(error));
+}
+
+void fail_reading(const std::filesystem::path& file, int error) {
+  throw Error(Cause::input_output, Place{file.string()},
+              "this file cannot be read: " + std::generic_category().message(error),
+              {error == ENOENT   ? "bring the file back, or check the path"
+               : error == EACCES ? "see to it that you may read it (ls -l)"
+                                 : ""});
+}
+
+std::string sha256(const std::filesystem::path& file) {
+  char digest[SHA256_DIGEST_STRING_LENGTH] = {};
+  static_cast<void>(InputFile(file));
+  errno = 0;
+  if (SHA256File(file.c_str(), digest) == nullptr) {
+    throw Error(Cause::input_output, Place{file.string()}, std::string("cannot be read: ") + std::strerror(errno));
+  }
+  return digest;
+}
+
+std::string sha256_of(std::string_view text) {
+  char digest[SHA256_DIGEST_STRING_LENGTH] = {};
+  return SHA256Data(reinterpret_cast<const std::uint8_t*>(text.data()), text.size(), digest);
 }
 
 }  // namespace rouleau

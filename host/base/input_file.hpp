@@ -1,12 +1,39 @@
-// The one door for files that are read: regular ones alone, of a size that is said.
+// Files that the program reads: their bytes, whether they are still what they were, and why one cannot be read.
 #pragma once
 
+#include <sys/stat.h>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <string_view>
 
 namespace rouleau {
+
+/// Throws Error(input_output): the path, what was tried ("cannot be written"), the system's words for `error` (an
+/// errno) and what the user can do about it.
+[[noreturn]] void fail_file(const std::filesystem::path& file, const std::string& what, int error);
+
+/// The same for a file that cannot be read.
+[[noreturn]] void fail_reading(const std::filesystem::path& file, int error);
+
+/// What whoever replaces a file or writes to it changes: device, number, length, times of its content and of its entry.
+/// All zero: there is no such file.
+using FileStamp = std::array<std::int64_t, 7>;
+
+inline FileStamp stamp_of(const std::filesystem::path& file) {
+  struct stat s {};
+  if (::stat(file.c_str(), &s) != 0) return {};
+  const auto number = [](auto value) { return static_cast<std::int64_t>(value); };
+  return {number(s.st_dev),          number(s.st_ino),         number(s.st_size),        number(s.st_mtim.tv_sec),
+          number(s.st_mtim.tv_nsec), number(s.st_ctim.tv_sec), number(s.st_ctim.tv_nsec)};
+}
+
+/// SHA-256 of a file, lower-case hexadecimal. Throws Error(input_output).
+std::string sha256(const std::filesystem::path& file);
+/// SHA-256 of a text, in the same form.
+std::string sha256_of(std::string_view text);
 
 inline constexpr std::uintmax_t any_size = std::numeric_limits<std::uintmax_t>::max();
 

@@ -1,8 +1,9 @@
-// Plugins of the user's own folder: rouleau plugins --install DIR; and what a published collection has of those that
-// are there: rouleau plugins --index FILE.
+// Plugins of the user's own folder: rouleau plugins --install DIR; what a published collection has of those that are
+// there: rouleau plugins --index FILE; and the lock of a scene: rouleau plugins --lock SCENE.
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "plugin/catalog.hpp"
@@ -18,5 +19,13 @@ void install_plugins(const std::filesystem::path& folder, const plugin::Catalog&
 /// Prints of each entry of an index whether it is installed, and as what. Throws Error(plugin_refused) where a plugin
 /// has the version of the index and is not what the index says.
 void compare_with_index(const std::filesystem::path& index, const plugin::Catalog& catalog);
+
+/// Writes to `out` (empty: beside the scene), whole or not at all, and prints what is locked. Throws Error as for a
+/// run: bad_input for a wrong scene, plugin_refused for a plugin that cannot be used, input_output.
+void lock_scene(const std::filesystem::path& scene, const std::vector<std::filesystem::path>& plugin_dirs,
+                const std::filesystem::path& out);
+
+/// The command that makes a scene's lock anew, for when a plugin is meant to differ from it: a remedy's words.
+std::string lock_renewal(const std::filesystem::path& lock, const std::filesystem::path& scene);
 
 }  // namespace rouleau::command

@@ -9,10 +9,9 @@
 #include "command/process/terminal.hpp"
 #include "commands.hpp"
 #include "json/json.hpp"
-#include "lock_scene.hpp"
 #include "manage_plugins.hpp"
 #include "plugin/catalog.hpp"
-#include "plugin/parameter_ranges.hpp"
+#include "plugin/parameters.hpp"
 #include "scene/named_files.hpp"
 
 namespace rouleau::command {

@@ -5,14 +5,14 @@
 #include <optional>
 
 #include "base/error.hpp"
-#include "base/sha256.hpp"
+#include "base/input_file.hpp"
 #include "command/process/crew.hpp"
 #include "command/process/program.hpp"
 #include "files/checkpoint_file.hpp"
 #include "json/document.hpp"
 #include "json/json.hpp"
 #include "plugin/library.hpp"
-#include "trial/fingerprint.hpp"
+#include "trial/point_record.hpp"
 
 namespace rouleau::command {
 

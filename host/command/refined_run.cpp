@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <iostream>
 
-#include "accuracy/refinement.hpp"
+#include "accuracy/measure_errors.hpp"
 #include "base/text.hpp"
-#include "close_run.hpp"
 #include "command/process/program.hpp"
 #include "files/checkpoint_file.hpp"
-#include "files/refined_folder.hpp"
 #include "files/run_directory.hpp"
 #include "json/document.hpp"
 #include "ranked_run.hpp"
+#include "run_words.hpp"
 #include "trial/trial.hpp"
 
 namespace rouleau::command {

@@ -8,7 +8,6 @@
 #include "command/process/command_line.hpp"
 #include "commands.hpp"
 #include "report/report_data.hpp"
-#include "report/result_page.hpp"
 
 namespace rouleau::command {
 

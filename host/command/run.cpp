@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "accuracy/measure_errors.hpp"
-#include "close_run.hpp"
 #include "command/process/command_line.hpp"
 #include "command/process/crew.hpp"
 #include "command/process/interruption.hpp"

@@ -8,7 +8,7 @@
 #include "command/process/command_line.hpp"
 #include "command/process/crew.hpp"
 #include "core/membrane/membranes.hpp"
-#include "lock_scene.hpp"
+#include "manage_plugins.hpp"
 #include "plan/placed_cells.hpp"
 #include "plan/ranks/blocks.hpp"
 

@@ -7,7 +7,7 @@
 #include "command/process/interruption.hpp"
 #include "command/process/terminal.hpp"
 #include "commands.hpp"
-#include "study/study_files.hpp"
+#include "study/analysis_json.hpp"
 #include "study/study_run.hpp"
 
 namespace rouleau::command {

@@ -13,7 +13,6 @@
 
 #include "base/error.hpp"
 #include "base/input_file.hpp"
-#include "checksum.hpp"
 #include "file.hpp"
 #include "hdf5/hdf5_rows.hpp"
 

@@ -1,14 +1,27 @@
-// Where the fields of a run lie, read back from its frames.
+// Where the fields of a run lie, and its last velocities, read back from its frames.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "hdf5/hdf5_file.hpp"
 
 namespace rouleau::files {
+
+struct VelocityField {
+  double time;        ///< s
+  std::size_t stage;  ///< number of the scene's stage
+  std::size_t nx;
+  std::vector<double> y, z;      ///< of the rows, m; in two dimensions one z, 0
+  std::vector<double> velocity;  ///< m/s, three components beside each other, then x, y, z
+};
+
+/// Nothing where no frame has a velocity. Throws Error(input_output).
+std::optional<VelocityField> last_velocity(const std::filesystem::path& frames);
 
 /// The nodes that fields were written at: the lattice, or where the scene says so a region of it, or one in so many.
 struct FieldNodes {

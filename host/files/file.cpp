@@ -1,16 +1,25 @@
 #include "file.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <xxhash.h>
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <cstdlib>
+#include <new>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
 #include "base/error.hpp"
 #include "base/input_file.hpp"
 #include "base/text.hpp"
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <system_error>
-#include <utility>
 
 namespace rouleau::files {
 
@@ -182,6 +191,85 @@ FileMark AppendFile::mark() {
 void AppendFile::close() {
   synchronise();
   if (std::fclose(stream_.release()) != 0) fail_file(file_, "cannot be written", errno);
+}
+
+FileLock::FileLock(const std::filesystem::path& file) : file_(file) {
+  // In a folder that all may write to only its owner may open a file for making it; locking needs no right to write.
+  descriptor_ = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (descriptor_ < 0 && errno == ENOENT)
+    descriptor_ = open(file.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+  if (descriptor_ < 0) fail_file(file, "cannot be opened to be locked", errno);
+}
+
+FileLock::~FileLock() { close(descriptor_); }
+
+bool FileLock::take() {
+  while (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EWOULDBLOCK) return false;
+    if (errno == ENOLCK || errno == ENOTSUP || errno == EINVAL) return true;  // a file system that knows no locks
+    if (errno != EINTR) fail_file(file_, "cannot be locked", errno);
+  }
+  return true;
+}
+
+bool FileLock::wait(const std::function<void()>& waiting, const std::atomic<bool>* interrupted) {
+  if (take()) return true;
+  waiting();
+  while (!take()) {
+    if (interrupted != nullptr && *interrupted) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  return true;
+}
+
+void FileLock::release() { flock(descriptor_, LOCK_UN); }
+
+std::filesystem::path timing_lock_file() {
+  if (const char* chosen = secure_getenv("ROULEAU_TIMING_LOCK"); chosen != nullptr && *chosen != '\0') return chosen;
+  const char* runtime = secure_getenv("XDG_RUNTIME_DIR");
+  const std::filesystem::path folder = runtime != nullptr && std::filesystem::is_directory(runtime) ? runtime : "/tmp";
+  return folder / "rouleau-timing.lock";
+}
+
+Checksum::Checksum() : state_(XXH3_createState()) {
+  if (!state_) throw std::bad_alloc();
+  XXH3_64bits_reset(state_.get());
+}
+
+void Checksum::Free::operator()(XXH3_state_s* state) const noexcept { XXH3_freeState(state); }
+
+void Checksum::update(std::string_view bytes) { XXH3_64bits_update(state_.get(), bytes.data(), bytes.size()); }
+
+std::uint64_t Checksum::value() const { return XXH3_64bits_digest(state_.get()); }
+
+Checksum checksum_of(const std::filesystem::path& file, std::uintmax_t first, std::uintmax_t end) {
+  const InputFile input(file);
+  Checksum checksum;
+  std::vector<char> buffer(std::size_t{1} << 18);
+  for (std::uintmax_t at = first; at < end;) {
+    const auto wanted = static_cast<std::size_t>(std::min<std::uintmax_t>(buffer.size(), end - at));
+    const std::size_t read = input.read(buffer.data(), wanted, at);
+    checksum.update({buffer.data(), read});
+    at += read;
+    if (read < wanted) break;
+  }
+  return checksum;
+}
+
+std::string checksum_text(std::uint64_t checksum) {
+  std::string digits(16, '0');
+  for (auto digit = digits.rbegin(); digit != digits.rend(); ++digit, checksum >>= 4)
+    *digit = "0123456789abcdef"[checksum & 15];
+  return digits;
+}
+
+std::uint64_t checksum_from_text(const std::string& text) {
+  std::uint64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value, 16);
+  if (text.size() != 16 || error != std::errc{} || rest != end)
+    throw std::invalid_argument("\"" + text + "\" is no checksum of sixteen hexadecimal digits");
+  return value;
 }
 
 }  // namespace rouleau::files

@@ -1,17 +1,45 @@
-// Files that grow or are replaced, with every write checked and every failure worded for the user.
+// Files that grow or are replaced, with every write checked and every failure worded for the user; their locks and
+// checksums.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
 
-#include "base/file_fault.hpp"
-#include "checksum.hpp"
+#include "base/input_file.hpp"
+
+struct XXH3_state_s;
 
 namespace rouleau::files {
+
+/// XXH3 with 64 bits (xxhash.com) of bytes that come piece by piece.
+class Checksum {
+ public:
+  Checksum();
+  void update(std::string_view bytes);
+  [[nodiscard]] std::uint64_t value() const;
+
+ private:
+  struct Free {
+    void operator()(XXH3_state_s* state) const noexcept;
+  };
+  std::unique_ptr<XXH3_state_s, Free> state_;
+};
+
+/// Of the bytes [first, end) of a file, or to where it ends if that is before `end`. Throws Error(input_output).
+Checksum checksum_of(const std::filesystem::path& file, std::uintmax_t first = 0,
+                     std::uintmax_t end = std::numeric_limits<std::uintmax_t>::max());
+
+/// Sixteen hexadecimal digits, as `xxh64sum -H3` prints them.
+std::string checksum_text(std::uint64_t checksum);
+/// Throws std::invalid_argument for anything but sixteen hexadecimal digits.
+std::uint64_t checksum_from_text(const std::string& text);
 
 /// The most that is read of a table or a log, bytes.
 inline constexpr std::uintmax_t largest_table = std::uintmax_t{2} << 30U;
@@ -77,5 +105,29 @@ class AppendFile {
   Checksum checksum_;  ///< of what clear() or go_back() left, and all that was written since
   std::uintmax_t bytes_ = 0;
 };
+
+/// An exclusive lock on a file or directory, held until it is destroyed or the process ends, however that ends.
+class FileLock {
+ public:
+  /// Nothing is locked yet. The file is made if it is not there. Throws Error(input_output).
+  explicit FileLock(const std::filesystem::path& file);
+  ~FileLock();
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+
+  /// False when another process has it. True, without a lock, on file systems that know none.
+  [[nodiscard]] bool take();
+  /// Waits for it; `waiting` is called once if it does. False when `interrupted` was set meanwhile.
+  [[nodiscard]] bool wait(const std::function<void()>& waiting, const std::atomic<bool>* interrupted);
+  void release();
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+};
+
+/// The file that every study on this machine locks while it takes times: $ROULEAU_TIMING_LOCK, or
+/// rouleau-timing.lock in $XDG_RUNTIME_DIR, or in /tmp.
+std::filesystem::path timing_lock_file();
 
 }  // namespace rouleau::files

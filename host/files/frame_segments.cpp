@@ -4,7 +4,6 @@
 #include <system_error>
 
 #include "base/error.hpp"
-#include "checksum.hpp"
 #include "file.hpp"
 
 namespace rouleau::files {

@@ -93,16 +93,18 @@ class NumberRows {
   std::vector<int> waiting_;
 };
 
+[[noreturn]] void refuse_damaged(const hdf5::File& file, const std::string& group, const char* dataset,
+                                 const char* other) {
+  throw Error(Cause::input_output, Place{file.path().string()},
+              group + dataset + " does not fit " + group + other + ": the file is damaged; repeat the run");
+}
+
 }  // namespace
 
 void FrameWriter::write_membranes(const std::string& frame, const observe::Snapshot& snapshot, FrameRecord& record) {
   const observe::MembraneSnapshot& membranes = snapshot.membranes;
   if (!topology_here_ || membranes.first != first_ || membranes.cell != cell_) write_topology(membranes);
-  record.nodes = topology_record_.nodes;
-  record.cells = topology_record_.cells;
-  record.connectivity = topology_record_.connectivity;
-  record.uniform = topology_record_.uniform;
-  record.surfaces = topology_record_.surfaces;
+  static_cast<Topology&>(record) = topology_record_;
 
   const std::string group = frame + "/membranes";
   open_->make_group(group);
@@ -266,8 +268,7 @@ std::vector<int> cells_of(const hdf5::File& file, const std::string& group, cons
     const auto node = static_cast<std::size_t>(first[k]);
     const double number = node < of_node.size() ? of_node[node] : -1;
     if (!(number > (cells.empty() ? -1 : cells.back()) && number <= std::numeric_limits<int>::max()))
-      throw Error(Cause::input_output, Place{file.path().string()},
-                  group + "/cell does not fit " + group + "/first: the file is damaged; repeat the run");
+      refuse_damaged(file, group, "/cell", "/first");
     cells.push_back(static_cast<int>(number));
   }
   return cells;
@@ -284,10 +285,7 @@ observe::OutlineSnapshot FrameReader::surfaces(int frame) const {
   double before = -1;
   for (const double first : file_.read(group + "/first")) {
     const bool begins = before >= 0 || first == 0;
-    if (!(begins && first > before && first <= nodes)) {
-      throw Error(Cause::input_output, Place{file_.path().string()},
-                  group + "/first does not fit " + group + "/points: the file is damaged; repeat the run");
-    }
+    if (!(begins && first > before && first <= nodes)) refuse_damaged(file_, group, "/first", "/points");
     outlines.first.push_back(static_cast<int>(before = first));
   }
   outlines.cell = cells_of(file_, group, outlines.first);
@@ -296,17 +294,13 @@ observe::OutlineSnapshot FrameReader::surfaces(int frame) const {
     for (std::size_t axis = 0; axis < components; ++axis) along[axis]->push_back(points[i + axis]);
   }
   outlines.tension = file_.read(group + "/tension");
-  if (outlines.tension.size() != outlines.x.size())
-    throw Error(Cause::input_output, Place{file_.path().string()},
-                group + "/tension does not fit " + group + "/points: the file is damaged; repeat the run");
+  if (outlines.tension.size() != outlines.x.size()) refuse_damaged(file_, group, "/tension", "/points");
   if (!in_space) return outlines;
   const auto corners = file_.read(group + "/triangles");
   for (std::size_t i = 0; i + 3 <= corners.size(); i += 3) {
     std::array<int, 3>& triangle = outlines.triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
-      if (!(corners[i + k] >= 0 && corners[i + k] < nodes))
-        throw Error(Cause::input_output, Place{file_.path().string()},
-                    group + "/triangles does not fit " + group + "/points: the file is damaged; repeat the run");
+      if (!(corners[i + k] >= 0 && corners[i + k] < nodes)) refuse_damaged(file_, group, "/triangles", "/points");
       triangle[k] = static_cast<int>(corners[i + k]);
     }
   }

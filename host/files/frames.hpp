@@ -85,11 +85,11 @@ class FrameWriter {
   FramesSaved saved_;               ///< every sealed segment
   std::optional<hdf5::File> open_;  ///< the segment that is being written
   std::vector<FrameRecord> frames_;
-  std::vector<int> cell_;        ///< as in the topology written last
-  std::vector<int> first_;       ///< likewise
-  FrameRecord topology_record_;  ///< of the topology written last
-  std::string topology_;         ///< its group
-  bool topology_here_ = false;   ///< it is in the open segment
+  std::vector<int> cell_;       ///< as in the topology written last
+  std::vector<int> first_;      ///< likewise
+  Topology topology_record_;    ///< of the topology written last
+  std::string topology_;        ///< its group
+  bool topology_here_ = false;  ///< it is in the open segment
   int topologies_ = 0;
 };
 

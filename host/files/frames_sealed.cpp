@@ -5,7 +5,6 @@
 #include <map>
 #include <set>
 
-#include "checksum.hpp"
 #include "file.hpp"
 #include "frames.hpp"
 
@@ -54,11 +53,7 @@ void FrameWriter::read_back(const std::filesystem::path& source, std::size_t fra
         topology_record_.connectivity =
             file.elements(topology + (topology_record_.surfaces ? "/triangles" : "/connectivity"));
       }
-      record.nodes = topology_record_.nodes;
-      record.cells = topology_record_.cells;
-      record.connectivity = topology_record_.connectivity;
-      record.surfaces = topology_record_.surfaces;
-      record.uniform = topology_record_.uniform;
+      static_cast<Topology&>(record) = topology_record_;
     }
     if (file.has(frame + "/fields"))
       for (const char* field : field_names)

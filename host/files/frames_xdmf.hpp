@@ -11,14 +11,18 @@ namespace rouleau::files {
 /// "/frames/000012"
 std::string frame_path(std::size_t frame);
 
-/// What frames.xmf has to know about a frame.
-struct FrameRecord {
-  double time = 0;                   ///< s
-  std::size_t nodes = 0, cells = 0;  ///< of membranes; 0: none
+/// What frames.xmf has to know about the membranes of a frame.
+struct Topology {
+  std::size_t nodes = 0, cells = 0;  ///< 0: none
   std::size_t connectivity = 0;      ///< entries
   bool uniform = false;              ///< all cells have the same number of nodes
   bool surfaces = false;             ///< triangles, of three nodes each, and not outlines
-  std::vector<std::string> fields;   ///< datasets under fields/
+};
+
+/// And about the frame.
+struct FrameRecord : Topology {
+  double time = 0;                  ///< s
+  std::vector<std::string> fields;  ///< datasets under fields/
 };
 
 /// Where the nodes lie that the fields are given at, and how their numbers are stored.

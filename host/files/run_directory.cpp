@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string_view>
 #include <system_error>
 
 #include "checkpoint_file.hpp"
 #include "file.hpp"
-#include "file_lock.hpp"
 #include "frames.hpp"
 #include "json/document.hpp"
-#include "log.hpp"
 #include "observe/cell_traffic.hpp"
-#include "refined_folder.hpp"
 #include "tables.hpp"
 #include "verify.hpp"
 
@@ -207,6 +205,27 @@ void RunDirectory::finish(const nlohmann::json& summary) {
   }
   // Last: who finds a summary finds everything else complete.
   write_file(directory_ / "summary.json", sealed_summary(summary, directory_, names), kept_);
+}
+
+void Log::go_on(double elapsed) {
+  file_.end_line();
+  before_ = elapsed;
+}
+
+double Log::elapsed() const {
+  return before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+void Log::write(const std::string& event, const nlohmann::json& details) {
+  nlohmann::ordered_json line{{"wall_s", std::round(elapsed() * 1e6) * 1e-6}, {"event", event}};
+  if (details.is_object())
+    // A detail named like a part of every line must not stand in its place: when something happened is never lost.
+    for (const auto& [key, value] : details.items()) line[line.contains(key) ? event + "_" + key : key] = value;
+  else if (!details.is_null())
+    line["details"] = details;
+  // A path or a loader's message may hold bytes that are no UTF-8; that must not end a run.
+  file_.write(line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  file_.flush();
 }
 
 }  // namespace rouleau::files

@@ -1,6 +1,7 @@
 // A run's directory: the only place, with the checkpoint, where the simulation writes files.
 #pragma once
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "file.hpp"
 #include "frame_segments.hpp"
 #include "json/json.hpp"
 #include "observe/snapshot.hpp"
@@ -15,6 +17,29 @@
 #include "tables.hpp"
 
 namespace rouleau::files {
+
+class Log {
+ public:
+  /// Throws Error(input_output) when it cannot be made.
+  explicit Log(const std::filesystem::path& file, Kept kept = Kept::on_disk) : file_(file, kept) {}
+  /// Keeps a former run's lines but for a last one that was never ended; time goes on from `elapsed` seconds.
+  void go_on(double elapsed);
+  /// Seconds since the log was opened, and those of the run it goes on from.
+  [[nodiscard]] double elapsed() const;
+  /// {"wall_s": elapsed(), "event": event, ...details}; details that are no object become
+  /// "details", and a detail called wall_s or event is written as EVENT_wall_s.
+  void write(const std::string& event, const nlohmann::json& details);
+  void close() { file_.close(); }
+
+ private:
+  AppendFile file_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double before_ = 0;
+};
+
+/// Folder of a run's directory that holds the run with finer numerics which followed because the first one missed its
+/// target: a whole run's directory.
+inline constexpr std::string_view refined_folder = "refined";
 
 /// The scene as used, as it stands in a run's scene.json: the user's own text unless --set changed it.
 std::string scene_text(const json::Document& document);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,5 +30,9 @@ struct Verification {
 /// Error(input_output) where a file cannot be read.
 Verification verify(const std::filesystem::path& directory,
                     const std::function<bool(const std::string& name)>& wanted = {});
+
+/// The first dataset of a frame's membranes or fields with a NaN or an infinite value, in words; nothing where all are
+/// finite. Throws Error(input_output).
+std::optional<std::string> find_no_number_in_frames(const std::filesystem::path& frames);
 
 }  // namespace rouleau::files

@@ -6,7 +6,6 @@
 #include <system_error>
 
 #include "base/error.hpp"
-#include "base/file_fault.hpp"
 #include "base/input_file.hpp"
 #include "base/text.hpp"
 

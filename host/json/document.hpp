@@ -2,13 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/error.hpp"
 #include "json.hpp"
-#include "text_tree.hpp"
+#include "parser.hpp"
 
 namespace rouleau::json {
 
@@ -56,5 +57,15 @@ class Document {
   TextTree tree_;
   std::vector<Override> overrides_;
 };
+
+/// Thrown for a pointer that is none or that leads nowhere; what() is one sentence for the user.
+class PutError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Puts `value` into `root` at a JSON pointer. Members that are absent are made (a schema then says whether they may be
+/// there), "-" appends to a list. Returns the pointer that names the value now, without "-". Throws PutError.
+std::string put_value(nlohmann::json& root, const std::string& pointer, const nlohmann::json& value);
 
 }  // namespace rouleau::json

@@ -10,7 +10,6 @@
 #include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "json_pointer.hpp"
-#include "schema_branch.hpp"
 #include "schema_words.hpp"
 #include "shown.hpp"
 

@@ -1,7 +1,7 @@
 // Judges a document by a JSON Schema (draft 7), with errors a user can act on.
 #pragma once
 
-#include "base/faults.hpp"
+#include "base/error.hpp"
 #include "document.hpp"
 #include "json.hpp"
 

@@ -1,8 +1,12 @@
 #include "node_checks.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "core/membrane/motion.hpp"
+#include "json/json.hpp"
 #include "units/lattice_units.hpp"
 
 namespace rouleau::monitor {
@@ -30,6 +34,23 @@ FoundNode escaped_node(const core::AnySolver<D>& solver) {
   return core::best_of_all(
       solver.ranks(), found(solver.cells(), solver.escaped_node(), 0),
       [](const FoundNode& a, const FoundNode& b) { return is_node(a) && (!is_node(b) || a.node < b.node); });
+}
+
+/// What a check says of a failure; mode and time come later. CBOR holds every number to its last bit.
+std::vector<std::uint8_t> packed(const Failure& f) {
+  const std::vector<double> place(f.place.begin(), f.place.end());
+  return nlohmann::json::to_cbor({f.reason, place, f.cell, f.value, f.limit, f.message, f.remedy});
+}
+
+Failure unpacked(const std::vector<std::uint8_t>& bytes) {
+  const nlohmann::json text = nlohmann::json::from_cbor(bytes);
+  Failure f;
+  f.reason = text.at(0), f.cell = text.at(2), f.value = text.at(3), f.limit = text.at(4);
+  f.message = text.at(5), f.remedy = text.at(6);
+  const std::vector<double> place = text.at(1);
+  f.place = scene::Vector::filled(static_cast<int>(place.size()), 0);
+  std::copy(place.begin(), place.end(), f.place.begin());
+  return f;
 }
 
 }  // namespace
@@ -84,5 +105,24 @@ std::optional<Failure> check_nodes(const core::AnySolver<D>& solver, double limi
 
 template std::optional<Failure> check_nodes(const core::AnySolver<2>&, double, const scene::StageSetting&);
 template std::optional<Failure> check_nodes(const core::AnySolver<3>&, double, const scene::StageSetting&);
+
+template <int D>
+std::optional<Failure> first_failure(const core::Ranks<D>& ranks, std::optional<Failure> mine,
+                                     std::array<double, 2> order) {
+  if (!ranks.several()) return mine;
+  struct Found {
+    bool any;
+    std::array<double, 2> order;
+    int rank;
+  };
+  const Found first =
+      core::best_of_all(ranks, Found{mine.has_value(), order, ranks.transport->rank()},
+                        [](const Found& a, const Found& b) { return a.any && (!b.any || a.order < b.order); });
+  if (!first.any) return std::nullopt;
+  return unpacked(core::of_rank(ranks, first.rank, mine ? packed(*mine) : std::vector<std::uint8_t>{}));
+}
+
+template std::optional<Failure> first_failure(const core::Ranks<2>&, std::optional<Failure>, std::array<double, 2>);
+template std::optional<Failure> first_failure(const core::Ranks<3>&, std::optional<Failure>, std::array<double, 2>);
 
 }  // namespace rouleau::monitor

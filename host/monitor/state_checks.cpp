@@ -1,5 +1,6 @@
 #include "state_checks.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <variant>
@@ -9,14 +10,15 @@
 #include "core/contact/crossing.hpp"
 #include "core/contact/surface_crossing.hpp"
 #include "core/membrane/geometry.hpp"
-#include "first_failure.hpp"
 #include "node_checks.hpp"
+#include "plan/constants.hpp"
 #include "plan/limits.hpp"
 #include "plan/solver_setup.hpp"
 #include "scene/driving_flow.hpp"
 #include "shape/extent.hpp"
 
 namespace rouleau::monitor {
+
 namespace {
 
 Failure failure(std::string reason, const scene::Vector& place, int cell, double value, double limit,
@@ -278,5 +280,38 @@ template std::optional<Failure> check_state(observe::Observer&, core::AnySolver<
                                             const scene::StageSetting&, const plan::Plan&);
 template std::optional<Failure> check_state(observe::Observer&, core::AnySolver<3>&, const core::FluidMeasures<3>&,
                                             const scene::StageSetting&, const plan::Plan&);
+
+template <int D>
+std::optional<Failure> check_energy(const observe::EnergyHistory& energy, const core::CellNodes& cells,
+                                    const core::Ranks<D>& ranks, const plan::Plan& plan,
+                                    const scene::StageSetting& setting) {
+  const double growth = core::of_first(ranks, energy.relative_growth());
+  const double limit = plan.scene->checks.energy_growth;
+  if (growth <= limit) return std::nullopt;
+  const bool bonds =
+      std::any_of(plan.interactions.begin(), plan.interactions.end(),
+                  [](const plan::PlannedModel& model) { return model.active() && !model.manifest->state.empty(); });
+  if (bonds) return std::nullopt;
+  Failure failure;
+  failure.reason = "energy_growth";
+  failure.value = growth;
+  failure.limit = limit;
+  failure.message =
+      "cells and fluid at rest have gained energy (as a share of what there is), which they can only lose";
+  failure.remedy = "lower " + setting.stage->density_factor_key;
+  if (plan::kernel_named(plan.scene->numerics.kernel).semi_implicit_from == INFINITY)
+    failure.remedy = "set numerics.kernel to \"peskin4\", or " + failure.remedy;
+  else if (plan.semi_implicit)
+    failure.remedy += ", so far that numerics.coupling may be \"explicit\" (the plan has the margins)";
+  failure.remedy += ", or raise checks.energy_growth if this error is acceptable";
+  const FoundNode fastest = farthest_node(cells, ranks);
+  if (fastest.node >= 0) locate_failure<D>(failure, fastest, setting.units.length);
+  return failure;
+}
+
+template std::optional<Failure> check_energy(const observe::EnergyHistory&, const core::CellNodes&,
+                                             const core::Ranks<2>&, const plan::Plan&, const scene::StageSetting&);
+template std::optional<Failure> check_energy(const observe::EnergyHistory&, const core::CellNodes&,
+                                             const core::Ranks<3>&, const plan::Plan&, const scene::StageSetting&);
 
 }  // namespace rouleau::monitor

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "aggregate_event.hpp"
+#include "aggregates.hpp"
 #include "snapshot.hpp"
 
 namespace rouleau::observe {

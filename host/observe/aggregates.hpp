@@ -2,14 +2,32 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <string>
 #include <vector>
 
 #include "core/domain/images.hpp"
 #include "core/membrane/membranes.hpp"
 #include "core/solver/surroundings.hpp"
 #include "core/surface/surfaces.hpp"
+#include "json/json.hpp"
 
 namespace rouleau::observe {
+
+struct AggregateEvent {
+  double strain, time;
+  int count;
+  std::vector<std::vector<int>> members;  ///< empty: not kept
+  bool through_image;
+  std::vector<std::vector<int>> joined = {};  ///< by attracting contacts alone; empty: as members, or nothing attracts
+  std::vector<std::array<int, 2>> met_images = {};  ///< attracting pairs that left each other and met by another image
+  [[nodiscard]] const std::vector<std::vector<int>>& together() const { return joined.empty() ? members : joined; }
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(AggregateEvent, strain, time, count, members, through_image, joined, met_images)
+};
+
+/// "rouleaux of 3 and 2 cells and 1 single cell", the largest first; of more than four rouleaux the number and range;
+/// "4 single cells" where there is none. sizes: number of cells of each aggregate, in any order, single cells included.
+std::string aggregates_in_words(std::vector<std::size_t> sizes);
 
 struct CellContact {
   int cell_a, cell_b;      ///< cell_a < cell_b, or equal for a cell and its own image

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "columns.hpp"
-#include "json/number_or_null.hpp"
+#include "json/shown.hpp"
 #include "scene/scene.hpp"
 
 namespace rouleau::observe {

@@ -1,7 +1,8 @@
-// Fluid fields of a snapshot in SI units.
+// Fields of a snapshot in SI units, of the fluid and of the membranes.
 #pragma once
 
 #include "core/fluid/any_fluid.hpp"
+#include "core/solver/any_solver.hpp"
 #include "scene/scene.hpp"
 #include "snapshot.hpp"
 #include "units/lattice_units.hpp"
@@ -14,5 +15,11 @@ namespace rouleau::observe {
 template <int D>
 FieldSnapshot observe_fields(const core::AnyFluid<D>& fluid, const scene::Scene& scene,
                              const units::LatticeUnits& units, std::size_t bytes = core::band_bytes);
+
+/// Places, tensions and, of surfaces, curvatures of a solver with cells, whose forces have been computed. What the
+/// fields give is computed when it is asked for: the solver must be there until then, and be where it is. All ranks
+/// together; which cells there are the first one knows.
+template <int D>
+MembraneSnapshot observe_membranes(core::AnySolver<D>& solver, const units::LatticeUnits& units);
 
 }  // namespace rouleau::observe

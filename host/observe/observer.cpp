@@ -12,8 +12,6 @@
 #include "core/fluid/relaxation.hpp"
 #include "energy.hpp"
 #include "fields.hpp"
-#include "membrane_fields.hpp"
-#include "particle_stress.hpp"
 #include "rheology.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/lattice.hpp"

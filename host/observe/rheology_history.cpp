@@ -9,7 +9,7 @@
 #include <set>
 
 #include "base/curve.hpp"
-#include "json/number_or_null.hpp"
+#include "json/shown.hpp"
 #include "observables.hpp"
 
 namespace rouleau::observe {

@@ -4,7 +4,6 @@
 #include <map>
 
 #include "base/text.hpp"
-#include "plugin/handles.hpp"
 #include "plugin/model.hpp"
 #include "scene/driving_flow.hpp"
 

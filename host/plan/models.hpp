@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/faults.hpp"
+#include "base/error.hpp"
 #include "core/model/model.hpp"
 #include "plugin/catalog.hpp"
 #include "plugin/parameters.hpp"

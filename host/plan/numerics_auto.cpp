@@ -13,7 +13,6 @@
 #include "scene/driving_flow.hpp"
 #include "scene/read_scene.hpp"
 #include "scene/scene_reader.hpp"
-#include "shape/fed_cells.hpp"
 #include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
 #include "shape/walls.hpp"

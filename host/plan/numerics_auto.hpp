@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "base/faults.hpp"
+#include "base/error.hpp"
 #include "json/document.hpp"
 #include "numerics_choice.hpp"
 #include "scene/scene.hpp"

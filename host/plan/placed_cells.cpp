@@ -15,7 +15,7 @@
 #include "core/geometry/parts.hpp"
 #include "core/membrane/geometry.hpp"
 #include "estimate.hpp"
-#include "scene/cell_table.hpp"
+#include "scene/cell_rows.hpp"
 #include "shape/crowding.hpp"
 #include "shape/extent.hpp"
 #include "shape/rest_shapes.hpp"

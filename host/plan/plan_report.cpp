@@ -11,8 +11,8 @@
 #include "scene/lattice.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/extent.hpp"
-#include "shape/fed_cells.hpp"
 #include "shape/outline.hpp"
+#include "shape/random_cells.hpp"
 
 namespace rouleau::plan {
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/input_file.hpp"
-#include "base/sha256.hpp"
 #include "base/text.hpp"
 #include "constants.hpp"
 #include "json/document.hpp"
@@ -15,7 +14,6 @@
 #include "scene/named_files.hpp"
 #include "scene/read_scene.hpp"
 #include "shape/extent.hpp"
-#include "shape/fed_cells.hpp"
 #include "shape/outline.hpp"
 #include "shape/passages.hpp"
 #include "shape/random_cells.hpp"

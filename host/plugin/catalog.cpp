@@ -10,7 +10,6 @@
 #include "base/text.hpp"
 #include "json/document.hpp"
 #include "manifest_reader.hpp"
-#include "manifest_search.hpp"
 #include "scene/dimension_words.hpp"
 #include "trust.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/file_stamp.hpp"
+#include "base/input_file.hpp"
 #include "json/json.hpp"
 #include "units/units.hpp"
 

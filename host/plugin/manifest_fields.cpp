@@ -7,7 +7,7 @@
 #include "base/text.hpp"
 #include "json/json_pointer.hpp"
 #include "json/shown.hpp"
-#include "parameter_ranges.hpp"
+#include "parameters.hpp"
 #include "quantities.hpp"
 
 namespace rouleau::plugin {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "files/csv_reader.hpp"
+#include "files/tables.hpp"
 
 namespace rouleau::report {
 

@@ -12,9 +12,9 @@
 #include <string>
 #include <utility>
 
-#include "files/csv_reader.hpp"
 #include "files/file.hpp"
 #include "files/frames.hpp"
+#include "files/tables.hpp"
 #include "files/verify.hpp"
 #include "json/document.hpp"
 #include "observe/observables.hpp"
@@ -22,7 +22,6 @@
 #include "report_fields.hpp"
 #include "report_outlines.hpp"
 #include "report_surfaces.hpp"
-#include "report_walls.hpp"
 
 namespace rouleau::report {
 

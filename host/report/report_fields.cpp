@@ -10,7 +10,6 @@
 #include "files/field_nodes.hpp"
 #include "files/frames.hpp"
 #include "report_outlines.hpp"
-#include "vorticity.hpp"
 
 namespace rouleau::report {
 

@@ -1,4 +1,4 @@
-// The cells' outlines as report.html carries them: integers relative to each cell's origin, in base64.
+// Outlines of cells and walls as report.html carries them: integers relative to each cell's origin, in base64.
 #pragma once
 
 #include <functional>
@@ -54,5 +54,11 @@ std::string tension_bytes(const observe::OutlineSnapshot& outlines, std::size_t 
 
 /// Base64 (RFC 4648) of bytes.
 std::string base64(const std::vector<unsigned char>& bytes);
+
+/// {corners_um, first, segments, surface}: x and y of the corners of polygons around walls, one after another, polygon
+/// i from corner first[i] on; segments: pairs of corners between which fluid meets them; surface {quantum_um, points,
+/// triangles} in three dimensions, else null: base64 of 16-bit multiples of the quantum, x, y, z of every corner, and
+/// of 32-bit numbers of corners. Null without such walls.
+nlohmann::json wall_data(const files::FrameReader& reader);
 
 }  // namespace rouleau::report

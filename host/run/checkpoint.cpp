@@ -9,8 +9,7 @@
 
 #include "checkpoint_match.hpp"
 #include "core/solver/in_order.hpp"
-#include "former_state.hpp"
-#include "saved_links.hpp"
+#include "run_state.hpp"
 
 namespace rouleau::run {
 

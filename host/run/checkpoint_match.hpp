@@ -1,4 +1,5 @@
-// Whose a checkpoint is: the scene, the program and the plugins that made it, held against those of the present run.
+// Whose a checkpoint is: the scene, the program and the plugins that made it, held against those of the present run;
+// what a former version left out is filled in.
 #pragma once
 
 #include <filesystem>
@@ -34,5 +35,10 @@ struct Resumption {
 /// Opens the directory's checkpoint; the previous one where that is damaged. Throws Error(input_output) when neither
 /// can be used, Error(bad_input) where it belongs to another run and `force` is not given or not safe.
 Resumption open_checkpoint(const std::filesystem::path& directory, const plan::Plan& plan, bool force);
+
+/// Adds what they did not say to a saved RunState: of each cell the node that tells its tank treading, which follows
+/// from how it was placed, which cells an output had, and columns that there were not. What is there stays as it is.
+template <int D>
+void complete_former_state(nlohmann::json& run, const plan::Plan& plan);
 
 }  // namespace rouleau::run

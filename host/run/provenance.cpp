@@ -3,14 +3,13 @@
 #include <sys/resource.h>
 #include <sys/utsname.h>
 #include <unistd.h>
-
 #include <chrono>
 #include <ctime>
 #include <fstream>
 #include <rouleau/dispatch.hpp>
 #include <thread>
 
-#include "base/sha256.hpp"
+#include "base/input_file.hpp"
 #include "files/run_directory.hpp"
 #include "json/document.hpp"
 #include "plugin/library.hpp"
@@ -80,5 +79,7 @@ Summary describe(const plan::Plan& plan, const plan::PlanReport& report, int thr
   s.plan = report;
   return s;
 }
+
+std::string program_version() { return ROULEAU_VERSION; }
 
 }  // namespace rouleau::run

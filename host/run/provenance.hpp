@@ -4,7 +4,6 @@
 #include <string>
 
 #include "summary.hpp"
-#include "version.hpp"
 
 namespace rouleau::run {
 
@@ -25,5 +24,8 @@ long peak_memory_bytes();
 
 /// The part of a summary that is known before the first step: scene, models with their hashes, plan, machine.
 Summary describe(const plan::Plan& plan, const plan::PlanReport& report, int threads);
+
+/// Version and, in a checkout, commit that the program was built from.
+std::string program_version();
 
 }  // namespace rouleau::run

@@ -4,6 +4,12 @@
 
 namespace rouleau::run {
 
+namespace {
+
+constexpr const char *link_places = "/links/place", *lefts = "/links/left", *aways = "/links/away";
+
+}  // namespace
+
 void RunState::report(Summary& s) const {
   s.steps = steps;
   s.strain = strain;
@@ -28,6 +34,24 @@ bool RunState::fits(const plan::Plan& plan, const core::CellNodes& membranes) co
   return stage >= 0 && stage < static_cast<int>(plan.stages.size()) && stage_step >= 0 && steps_before >= 0 &&
          steps >= stage_step && observer.fits(membranes) && rheology.fits() &&
          rest_watch.fits(membranes, plan.stages[stage].stage->until_at_rest);
+}
+
+std::size_t save_links(files::CheckpointWriter* writer, const core::LinkMemory& links) {
+  if (writer == nullptr || links.place.empty()) return links.place.size();
+  for (const auto& [path, values] :
+       {std::pair{link_places, &links.place}, std::pair{lefts, &links.left}, std::pair{aways, &links.away}}) {
+    writer->begin_array(path, values->size());
+    writer->append(*values);
+  }
+  return links.place.size();
+}
+
+core::LinkMemory read_links(const files::CheckpointReader& reader, const nlohmann::json& of_solver) {
+  if (of_solver.value("links", 0) == 0) return {};
+  core::LinkMemory links{reader.array(link_places), reader.array(lefts), reader.array(aways)};
+  if (links.left.size() != links.place.size() || links.away.size() != links.place.size())
+    reader.refuse("links without what has left along them");
+  return links;
 }
 
 }  // namespace rouleau::run

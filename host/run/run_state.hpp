@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "monitor/equilibrium_watch.hpp"
+#include "core/fluid/any_fluid.hpp"
+#include "files/checkpoint_file.hpp"
+#include "json/json.hpp"
 #include "monitor/rest_watch.hpp"
 #include "observe/aggregate_history.hpp"
 #include "observe/cell_traffic.hpp"
@@ -95,5 +97,10 @@ struct RunState {
                                  momentum_residual, observer, history, rheology, energy, costs, rest_watch, equilibrium,
                                  stages, resumed)
 };
+
+/// Writes the arrays, if there are links; `writer`: null on ranks that do not write. Returns how many there are.
+std::size_t save_links(files::CheckpointWriter* writer, const core::LinkMemory& links);
+/// Of the solver's part of a checkpoint. Former versions kept nothing, and took what came back for what had left.
+core::LinkMemory read_links(const files::CheckpointReader& reader, const nlohmann::json& of_solver);
 
 }  // namespace rouleau::run

@@ -13,7 +13,6 @@
 #include "core/membrane/motion.hpp"
 #include "engine.hpp"
 #include "load_balance.hpp"
-#include "monitor/energy_check.hpp"
 #include "monitor/node_checks.hpp"
 #include "monitor/state_checks.hpp"
 #include "progress.hpp"

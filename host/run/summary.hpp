@@ -9,7 +9,7 @@
 
 #include "json/json.hpp"
 #include "monitor/failure.hpp"
-#include "observe/aggregate_event.hpp"
+#include "observe/aggregates.hpp"
 #include "plan/plan_report.hpp"
 #include "plugin/lock.hpp"
 

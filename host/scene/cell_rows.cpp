@@ -1,13 +1,17 @@
 #include "cell_rows.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "base/error.hpp"
+#include "base/input_file.hpp"
 #include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "scene_reader.hpp"
 
 namespace rouleau::scene {
+
 namespace {
 
 std::string small_letters(std::string text) {
@@ -141,6 +145,20 @@ void CellRows::add(std::optional<int> type, int line, const Value& value, const 
   if (!(axis.norm() > 1e-9 && axis.norm() < 1e9))
     refuse(columns.axis[0], "this axis has no direction; give three numbers that are not all 0");
   cell.axis = axis.normalized();
+}
+
+std::string origin_of(const CellPlacement& cell) {
+  return cell.pointer + (cell.line > 0 ? ", line " + std::to_string(cell.line) + " of its file" : "");
+}
+
+std::vector<CellPlacement> read_cell_table(const std::filesystem::path& file, const std::vector<CellType>& types,
+                                           const units::Units& units, const std::string& pointer,
+                                           std::optional<int> type) {
+  std::array<char, 8> first{};
+  InputFile(file).read(first.data(), first.size(), 0);
+  const CellTableSource source{file, types, units, pointer, type};
+  return std::string_view(first.data(), first.size()) == "\x89HDF\r\n\x1a\n" ? read_hdf5_cells(source)
+                                                                             : read_csv_cells(source);
 }
 
 }  // namespace rouleau::scene

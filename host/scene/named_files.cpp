@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "base/input_file.hpp"
 #include "base/installation.hpp"
-#include "base/sha256.hpp"
 #include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "json/json_pointer.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/faults.hpp"
+#include "base/error.hpp"
 #include "json/document.hpp"
 #include "json/json.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/faults.hpp"
+#include "base/error.hpp"
 #include "json/document.hpp"
 #include "json/json.hpp"
 #include "scene.hpp"

@@ -17,7 +17,7 @@
 #include <variant>
 #include <vector>
 
-#include "base/faults.hpp"
+#include "base/error.hpp"
 #include "core/geometry/region.hpp"
 #include "dimension_words.hpp"
 #include "json/document.hpp"

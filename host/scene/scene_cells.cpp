@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "base/text.hpp"
-#include "cell_table.hpp"
+#include "cell_rows.hpp"
 #include "core/surface/triangle_surface.hpp"
 #include "json/json_pointer.hpp"
 #include "scene_reader.hpp"

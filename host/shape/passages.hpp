@@ -1,7 +1,7 @@
 // Ways between walls, as the lattice sees them.
 #pragma once
 
-#include "base/faults.hpp"
+#include "base/error.hpp"
 #include "scene/scene.hpp"
 
 namespace rouleau::shape {

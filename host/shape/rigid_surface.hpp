@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "ball_tree.hpp"
+#include "crowding.hpp"
 #include "rigid_body.hpp"
 #include "scene/scene.hpp"
 

@@ -12,7 +12,6 @@
 #include "core/geometry/zero_border.hpp"
 #include "formats/image_file.hpp"
 #include "formats/mesh_file.hpp"
-#include "formats/mesh_weld.hpp"
 #include "surface.hpp"
 
 namespace rouleau::shape {

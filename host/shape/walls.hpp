@@ -1,7 +1,7 @@
 // The walls of a scene, as the region that they leave to the fluid.
 #pragma once
 
-#include "base/faults.hpp"
+#include "base/error.hpp"
 #include "scene/scene.hpp"
 
 namespace rouleau::shape {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/text.hpp"
-#include "files/csv_reader.hpp"
-#include "files/frames_check.hpp"
+#include "files/tables.hpp"
+#include "files/verify.hpp"
 
 namespace rouleau::stability {
 

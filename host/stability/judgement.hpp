@@ -16,6 +16,7 @@ struct HealthCriteria {
   double energy_growth = 0.01;  ///< at rest, over the energies there are (summary.json, energy)
   double stretch = 3;           ///< of any segment, and its inverse
   double mass_drift = 1e-4;     ///< relative
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE_WITH_DEFAULT(HealthCriteria, area_drift, energy_growth, stretch, mass_drift)
 };
 
 struct Judgement {

@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "base/text.hpp"
+#include "json/document.hpp"
 #include "json/json_pointer.hpp"
-#include "json/put_value.hpp"
 #include "json/schema.hpp"
 #include "units/units.hpp"
 
@@ -120,15 +120,6 @@ ExtremeCase read_case(const json::Document& document, std::size_t index, const L
   return extreme;
 }
 
-HealthCriteria read_criteria(const Json& given) {
-  HealthCriteria criteria;
-  criteria.area_drift = given.value("area_drift", criteria.area_drift);
-  criteria.energy_growth = given.value("energy_growth", criteria.energy_growth);
-  criteria.stretch = given.value("stretch", criteria.stretch);
-  criteria.mass_drift = given.value("mass_drift", criteria.mass_drift);
-  return criteria;
-}
-
 }  // namespace
 
 Json LimitsParameter::written(double value) const {
@@ -149,7 +140,7 @@ LimitsFile read_limits(const fs::path& file) {
   if (root.contains("cases")) {
     for (std::size_t i = 0; i < root["cases"].size(); ++i) limits.cases.push_back(read_case(document, i, limits));
   }
-  if (root.contains("sound")) limits.criteria = read_criteria(root["sound"]);
+  if (root.contains("sound")) limits.criteria = root["sound"];
   return limits;
 }
 

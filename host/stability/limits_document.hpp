@@ -1,4 +1,5 @@
-// A limits file as the user wrote it: scene, combinations of methods, the parameter whose edge is sought, cases.
+// A limits file as the user wrote it: scene, combinations of methods, the parameter whose edge is sought, cases; and
+// what has been found of it.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +10,7 @@
 #include "bisection.hpp"
 #include "json/json.hpp"
 #include "judgement.hpp"
-#include "trial/campaign_file.hpp"
+#include "trial/campaign.hpp"
 
 namespace rouleau::stability {
 
@@ -49,5 +50,32 @@ LimitsFile read_limits(const std::filesystem::path& file);
 /// The schemas of a limits file and of its limits.json.
 const nlohmann::json& limits_schema();
 const nlohmann::json& limits_result_schema();
+
+struct LimitsTrial {
+  double value;
+  Judgement judgement;
+};
+
+/// What was found for one combination of methods.
+struct CombinationResult {
+  trial::Point point;
+  EdgeSearch search;
+  std::vector<LimitsTrial> trials;  ///< in the order of the search
+};
+
+struct CaseResult {
+  const ExtremeCase* extreme;
+  Judgement judgement;
+  std::string verdict;  ///< "right answer", "stopped with a reason", "WRONG"
+  std::string outcome;  ///< one sentence
+  bool as_expected = false;
+};
+
+struct LimitsState {
+  const LimitsFile* limits;
+  std::vector<CombinationResult> combinations;
+  std::vector<CaseResult> cases;
+  std::string started, finished;  ///< finished: empty while it runs
+};
 
 }  // namespace rouleau::stability

@@ -4,8 +4,8 @@
 #include <sstream>
 
 #include "base/text.hpp"
-#include "files/csv_reader.hpp"
-#include "report/result_page.hpp"
+#include "files/tables.hpp"
+#include "report/report.hpp"
 #include "trial/campaign.hpp"
 
 namespace rouleau::stability {
@@ -111,11 +111,7 @@ Json limits_json(const LimitsState& state) {
   }
   for (const CaseResult& result : state.cases) cases.push_back(case_json(result));
   Json result = trial::result_head(trial::limits_kind, limits, state.started, state.finished, complete);
-  result.update({{"sound",
-                  {{"area_drift", limits.criteria.area_drift},
-                   {"energy_growth", limits.criteria.energy_growth},
-                   {"stretch", limits.criteria.stretch},
-                   {"mass_drift", limits.criteria.mass_drift}}},
+  result.update({{"sound", limits.criteria},
                  {"steps", limits.steps > 0 ? Json(limits.steps) : Json()},
                  {"parameter", limits.parameter ? parameter_json(*limits.parameter) : Json()},
                  {"edges", edges},

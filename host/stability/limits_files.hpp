@@ -5,7 +5,7 @@
 #include <string>
 
 #include "json/json.hpp"
-#include "limits_state.hpp"
+#include "limits_document.hpp"
 
 namespace rouleau::stability {
 

@@ -4,10 +4,10 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "json/put_value.hpp"
+#include "json/document.hpp"
 #include "limits_files.hpp"
 #include "run/provenance.hpp"
-#include "trial/fingerprint.hpp"
+#include "trial/point_record.hpp"
 
 namespace rouleau::stability {
 

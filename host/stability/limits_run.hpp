@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "json/json.hpp"
-#include "limits_state.hpp"
+#include "limits_document.hpp"
 
 namespace rouleau::stability {
 

@@ -6,7 +6,7 @@
 
 #include "json/json.hpp"
 #include "quantity.hpp"
-#include "trial/campaign_file.hpp"
+#include "trial/campaign.hpp"
 
 namespace rouleau::study {
 

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <set>
 
+#include "analysis_json.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "run/provenance.hpp"
-#include "study_files.hpp"
-#include "trial/fingerprint.hpp"
+#include "trial/point_record.hpp"
 
 namespace rouleau::study {
 

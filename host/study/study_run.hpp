@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "study_state.hpp"
+#include "analysis_json.hpp"
 #include "trial/campaign.hpp"
-#include "trial/run_cost.hpp"
+#include "trial/point_record.hpp"
 
 namespace rouleau::study {
 

@@ -4,7 +4,7 @@
 
 #include "core/fluid/developed_flow.hpp"
 #include "exact_flow.hpp"
-#include "files/velocity_reader.hpp"
+#include "files/field_nodes.hpp"
 #include "plan/read_scene.hpp"
 #include "quantity.hpp"
 #include "scene/driving_flow.hpp"

@@ -1,17 +1,30 @@
-// Messages over MPI, by a transport library that is opened for it.
+// Messages over MPI, by a transport library that is opened for it, where a launcher has started several ranks.
 #pragma once
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/domain/transport.hpp"
-#include "launcher.hpp"
 #include "table.h"
 
 namespace rouleau::transport {
+
+/// What the environment says of the launcher.
+struct Launch {
+  std::string command;   ///< "mpirun", "mpiexec" or "srun"
+  std::string launcher;  ///< "mpirun of Open MPI", ...: for messages
+  std::string mpi;       ///< whose library speaks with it: "openmpi", "mpich"; empty: none
+  int rank = 0;
+  int ranks = 0;  ///< 0: unknown
+};
+
+/// None for a process that was started alone, be it by a launcher, and where the environment has ROULEAU_LAUNCHER=none.
+/// Throws Error(bad_input) for another word there.
+std::optional<Launch> launched();
 
 /// Another rank has ended its part of the run, and says why.
 struct Farewell : core::RankLost {

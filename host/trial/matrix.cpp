@@ -4,8 +4,8 @@
 #include <set>
 
 #include "base/text.hpp"
+#include "json/document.hpp"
 #include "json/json_pointer.hpp"
-#include "json/put_value.hpp"
 #include "units/units.hpp"
 
 namespace rouleau::trial {

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "base/error.hpp"
-#include "base/sha256.hpp"
+#include "base/input_file.hpp"
 #include "files/file.hpp"
 #include "files/run_directory.hpp"
-#include "fingerprint.hpp"
+#include "plugin/catalog.hpp"
+#include "plugin/library.hpp"
+#include "plugin/lock.hpp"
+#include "scene/named_files.hpp"
 
 namespace rouleau::trial {
 
@@ -30,7 +34,7 @@ Json failure_of(const TrialResult& result) {
             {"remedy", failure["remedy"]}};
   }
   const Json steps = result.summary.is_object() ? result.summary.value("steps", Json()) : Json();
-  return {{"reason", to_string(result.end)}, {"step", steps}, {"message", result.message}, {"remedy", nullptr}};
+  return {{"reason", result.end}, {"step", steps}, {"message", result.message}, {"remedy", nullptr}};
 }
 
 TimedRun run_of(const TrialResult& result) {
@@ -41,6 +45,34 @@ TimedRun run_of(const TrialResult& result) {
     run.passes.push_back({{"name", pass["name"]}, {"wall_s", pass["wall_s"]}});
   }
   return run;
+}
+
+/// Before anything was measured.
+constexpr double usual_beside_s = 0.2;
+constexpr double shortest_estimate_s = 1e-6;
+
+std::size_t settings_shared(const Point& a, const Point& b) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.setting.size(); ++i) count += a.setting[i] == b.setting[i] ? 1 : 0;
+  return count;
+}
+
+void collect_models(const Json& value, std::set<std::string>& models) {
+  if (!value.is_structured()) return;
+  if (value.is_object() && value.contains("model") && value["model"].is_string()) models.insert(value["model"]);
+  for (const auto& part : value) collect_models(part, models);
+}
+
+std::vector<fs::path> scene_plugin_dirs(const Json& scene, const fs::path& scene_file) {
+  std::vector<fs::path> folders;
+  const fs::path beside = fs::absolute(scene_file).parent_path();
+  const Json listed = scene.is_object() ? scene.value("plugin_dirs", Json::array()) : Json::array();
+  for (const auto& folder : listed) {
+    std::error_code ignored;
+    const fs::path whole = folder.is_string() ? beside / folder.get<std::string>() : fs::path();
+    if (fs::is_directory(whole, ignored)) folders.push_back(whole);
+  }
+  return folders;
 }
 
 }  // namespace
@@ -78,23 +110,8 @@ TrialResult result_of(const PointRecord& record, const fs::path& directory) {
 }
 
 void write_record(const fs::path& points, const PointRecord& record) {
-  Json runs = Json::array();
-  for (const TimedRun& run : record.runs) {
-    runs.push_back(
-        {{"wall_s", run.wall_s}, {"cpu_s", run.cpu_s}, {"process_s", run.process_s}, {"passes", run.passes}});
-  }
-  const Json whole = {{"fingerprint", record.fingerprint},
-                      {"machine", record.machine},
-                      {"end", to_string(record.end)},
-                      {"failure", record.failure},
-                      {"runs", runs},
-                      {"tables_sha256", record.tables_sha256},
-                      {"difference", record.difference},
-                      {"steps", record.steps},
-                      {"peak_rss_bytes", record.peak_rss_bytes},
-                      {"time_limit_s", record.time_limit_s}};
   files::write_file(record_file(points, record.fingerprint),
-                    whole.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+                    Json(record).dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
 }
 
 std::optional<PointRecord> read_record(const fs::path& points, const std::string& fingerprint) {
@@ -102,20 +119,8 @@ std::optional<PointRecord> read_record(const fs::path& points, const std::string
   if (!fs::exists(file)) return std::nullopt;
   const Json whole = Json::parse(files::read_text(file), nullptr, false);
   try {
-    PointRecord record;
-    record.fingerprint = whole.at("fingerprint");
-    record.machine = whole.at("machine");
-    record.end = trial_end_named(whole.at("end")).value_or(TrialEnd::interrupted);
+    const auto record = whole.get<PointRecord>();
     if (record.end == TrialEnd::interrupted) return std::nullopt;
-    record.failure = whole.at("failure");
-    for (const Json& run : whole.at("runs")) {
-      record.runs.push_back({run.at("wall_s"), run.at("cpu_s"), run.at("process_s"), run.at("passes")});
-    }
-    record.tables_sha256 = whole.at("tables_sha256");
-    record.difference = whole.at("difference");
-    record.steps = whole.at("steps");
-    record.peak_rss_bytes = whole.at("peak_rss_bytes");
-    record.time_limit_s = whole.at("time_limit_s");
     const bool run_is_there = fs::exists(points / directory_name(fingerprint) / "summary.json");
     const bool must_be_there = record.end == TrialEnd::completed || record.end == TrialEnd::diverged;
     if (record.fingerprint != fingerprint || (must_be_there && !run_is_there)) return std::nullopt;
@@ -124,5 +129,68 @@ std::optional<PointRecord> read_record(const fs::path& points, const std::string
     return std::nullopt;  // damaged: the point is run again
   }
 }
+
+void RunCost::learn(const Point& point, double estimated_s, double stepping_s, double process_s) {
+  const double factor = stepping_s / std::max(estimated_s, shortest_estimate_s);
+  known_.push_back({point, estimated_s, factor, std::max(0.0, process_s - stepping_s)});
+}
+
+double RunCost::expected_s(const Point& point, double estimated_s) const {
+  if (known_.empty()) return usual_beside_s + estimated_s;
+  // The run most alike is the one with most settings in common; of several the longest, where little else counts.
+  const auto likeness = [&](const Known& known) {
+    return std::pair(settings_shared(known.point, point), known.estimated_s);
+  };
+  const Known& alike = *std::max_element(known_.begin(), known_.end(),
+                                         [&](const Known& a, const Known& b) { return likeness(a) < likeness(b); });
+  return alike.beside_s + alike.factor * estimated_s;
+}
+
+std::string program_sha256() {
+  static const std::string hash = sha256("/proc/self/exe");
+  return hash;
+}
+
+std::vector<UsedPlugin> plugins_named(const Json& scene, const fs::path& scene_file) {
+  std::set<std::string> models{"trt"};  // what a fluid has that names no collision model
+  collect_models(scene, models);
+  const plugin::Catalog catalog(plugin::plugin_search_path({}, scene_plugin_dirs(scene, scene_file)));
+  std::vector<UsedPlugin> used;
+  for (const std::string& id : models) {
+    const auto& offered = catalog.manifests();
+    const auto found =
+        std::find_if(offered.begin(), offered.end(), [&](const plugin::Manifest& m) { return m.id == id; });
+    UsedPlugin plugin{id, {}, {}};
+    try {
+      if (found != offered.end()) plugin = {id, plugin::library_sha256(*found), found->sha256};
+    } catch (const Error& error) {
+      if (error.cause() != Cause::plugin_refused) throw;
+    }
+    used.push_back(plugin);
+  }
+  return used;
+}
+
+std::string fingerprint(const Json& scene, const fs::path& scene_file, const std::vector<std::string>& further) {
+  Json all = {{"scene", scene}, {"program", program_sha256()}, {"plugins", Json::array()}, {"further", further}};
+  if (all["scene"].is_object()) all["scene"].erase("plugin_dirs");
+  if (all["scene"].is_object()) all["scene"].erase("notes");
+  for (const UsedPlugin& plugin : plugins_named(scene, scene_file)) {
+    all["plugins"].push_back({plugin.id, plugin.library_sha256, plugin.manifest_sha256});
+  }
+  for (const std::string& entry : scene::entries_with_files(scene)) {
+    scene::each_text(scene.at(Json::json_pointer(entry + "/file")), [&](const Json& name) {
+      const fs::path file = fs::absolute(scene_file).parent_path() / name.get<std::string>();
+      std::error_code ignored;
+      if (fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) <= largest_named)
+        all["files"].push_back(sha256(file));
+    });
+  }
+  const fs::path lock = plugin::lock_beside(scene_file);
+  if (fs::exists(lock)) all["lock"] = sha256(lock);
+  return sha256_of(all.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+std::string directory_name(const std::string& fingerprint) { return fingerprint.substr(0, 16); }
 
 }  // namespace rouleau::trial

@@ -8,7 +8,6 @@
 #include "base/error.hpp"
 #include "base/process.hpp"
 #include "base/text.hpp"
-#include "exit_code.hpp"
 #include "files/file.hpp"
 #include "files/run_directory.hpp"
 #include "json/document.hpp"
@@ -121,32 +120,6 @@ std::string message_of(TrialEnd end, const ProcessEnd& process, double time_limi
 }
 
 }  // namespace
-
-std::string to_string(TrialEnd end) {
-  switch (end) {
-    case TrialEnd::completed:
-      return "completed";
-    case TrialEnd::diverged:
-      return "diverged";
-    case TrialEnd::refused:
-      return "refused";
-    case TrialEnd::timed_out:
-      return "timed_out";
-    case TrialEnd::crashed:
-      return "crashed";
-    case TrialEnd::interrupted:
-      return "interrupted";
-  }
-  return "crashed";
-}
-
-std::optional<TrialEnd> trial_end_named(const std::string& name) {
-  for (const TrialEnd end : {TrialEnd::completed, TrialEnd::diverged, TrialEnd::refused, TrialEnd::timed_out,
-                             TrialEnd::crashed, TrialEnd::interrupted}) {
-    if (to_string(end) == name) return end;
-  }
-  return std::nullopt;
-}
 
 TrialResult run_trial(const Trial& trial) {
   write_scene(trial);

@@ -11,6 +11,18 @@
 
 namespace rouleau::trial {
 
+/// Exit codes of `rouleau` (fixed: users script against them).
+namespace exit_code {
+
+inline constexpr int done = 0;
+inline constexpr int simulation_failed = 1;  ///< it diverged, or a check failed
+inline constexpr int bad_input = 2;          ///< bad usage, or a scene that cannot be right
+inline constexpr int plugin_refused = 3;     ///< a manifest or library was refused, or does not conform
+inline constexpr int input_output = 4;       ///< a file could not be read or written
+inline constexpr int interrupted = 130;      ///< stopped by SIGINT or SIGTERM
+
+}  // namespace exit_code
+
 struct Trial {
   nlohmann::json scene;
   std::filesystem::path scene_file;  ///< that the scene was made from: its folder is where relative plugin_dirs begin,
@@ -28,10 +40,14 @@ struct Trial {
 };
 
 enum class TrialEnd { completed, diverged, refused, timed_out, crashed, interrupted };
-/// "completed", "timed_out" ...
-std::string to_string(TrialEnd end);
-/// The end that is called so; nothing where none is.
-std::optional<TrialEnd> trial_end_named(const std::string& name);
+/// An unknown word is read as the first of these: such a trial is run again.
+NLOHMANN_JSON_SERIALIZE_ENUM(TrialEnd, {{TrialEnd::interrupted, "interrupted"},
+                                        {TrialEnd::completed, "completed"},
+                                        {TrialEnd::diverged, "diverged"},
+                                        {TrialEnd::refused, "refused"},
+                                        {TrialEnd::timed_out, "timed_out"},
+                                        {TrialEnd::crashed, "crashed"}})
+inline std::string to_string(TrialEnd end) { return nlohmann::json(end); }
 
 struct TrialResult {
   TrialEnd end = TrialEnd::crashed;

@@ -1,13 +1,18 @@
 // Names and examples of the dimensions that users of this program meet, for messages about units.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "dimension.hpp"
-
 namespace rouleau::units {
+
+/// Exponents of kg, m, s, K, mol and A. An angle has none.
+struct Dimension {
+  std::array<int, 6> exponent{};
+  friend bool operator==(const Dimension&, const Dimension&) = default;
+};
 
 /// "a pressure"; `of the dimension kg m-3 s-1` where it has no common name.
 std::string kind_of(const Dimension& dimension);

@@ -2,13 +2,25 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "dimension.hpp"
+#include "dimension_names.hpp"
 
 namespace rouleau::units {
+
+/// The symbols of a unit in their order, parts of `unit`; nothing if it has not the shape
+///   unit    = "1" | [ "1/" ] product
+///   product = factor { [ "*" | "." | "·" | "-" | "/" | " per " ] factor }    with spaces anywhere between them
+///   factor  = ( symbol | "(" product ")" ) [ power ]
+///   power   = [ "^" | "**" ] [ sign ] digit [ digit ] | superscript digit [ superscript digit ]
+/// UDUNITS 2.2.28 knows more, but takes any number for a factor ("um 2" is 2 um), which hides slips of the pen,
+/// overlooks what follows a NUL or a ")" too many, and leaks the word it has just read wherever it finds out that
+/// something is wrong. What has this shape, and symbols that it knows, it takes to the end.
+std::optional<std::vector<std::string_view>> symbols_of(std::string_view unit);
 
 /// Thrown for text that is no quantity, or a quantity of the wrong dimension; what() is one sentence for the user.
 class UnitError : public std::runtime_error {

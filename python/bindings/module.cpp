@@ -9,7 +9,7 @@
 #include <chrono>
 #include <utility>
 
-#include "base/faults.hpp"
+#include "base/error.hpp"
 #include "base/foreign_call.hpp"
 #include "faults.hpp"
 #include "observe/observables.hpp"

@@ -36,7 +36,7 @@ ASKS = re.compile(r"\bif\b|\?|[=!]=|&&|\|\||!")
 DIMENSION = re.compile(r"\b(D|dimensions?_?(\(\))?)\s*[=!<>]=?\s*[23D]|\b(is_|of_)?(in_)?space_?(\(\))?\s*(\?|\)|&&|\|\||;|,)|\bin_space\b"
                        r"|\.z\.empty\(\)")
 # Outside command/ nobody speaks of the command line, but for these files.
-SPEAK = {"trial/trial.cpp": "gives a child its options", "json/set_option.cpp": "reads the text of --set",
+SPEAK = {"trial/trial.cpp": "gives a child its options", "json/document.cpp": "reads the text of --set",
          "conform/program.cpp": "is a program", "conform/check_program.cpp": "is a program"}
 
 

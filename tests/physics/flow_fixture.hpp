@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "plugin/catalog.hpp"
-#include "plugin/handles.hpp"
+#include "plugin/model.hpp"
 #include "unit/flow_fixture.hpp"
 
 namespace rouleau::test {

@@ -14,7 +14,7 @@
 #include "plan/read_scene.hpp"
 #include "run/simulation.hpp"
 #include "scratch_folder.hpp"
-#include "study/history.hpp"
+#include "study/quantity.hpp"
 
 namespace rouleau::test {
 

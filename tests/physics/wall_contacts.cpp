@@ -12,7 +12,7 @@
 #include "observe/aggregates.hpp"
 #include "observe/energy.hpp"
 #include "observe/observer.hpp"
-#include "observe/particle_stress.hpp"
+#include "observe/rheology.hpp"
 #include "scene_run.hpp"
 #include "solver_fixture.hpp"
 

@@ -20,7 +20,6 @@
 #include "base/text.hpp"
 #include "json/json_pointer.hpp"
 #include "json/schema.hpp"
-#include "plugin/collection.hpp"
 #include "plugin/lock.hpp"
 #include "plugin/manifest_reader.hpp"
 #include "scene/named_files.hpp"

@@ -17,7 +17,7 @@
 
 #include "base/foreign_call.hpp"
 #include "base/signal_stack.hpp"
-#include "trial/exit_code.hpp"
+#include "trial/trial.hpp"
 
 namespace rouleau::command {
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/faults.hpp"
+#include "base/error.hpp"
 #include "base/foreign_call.hpp"
 #include "base/synonyms.hpp"
 #include "base/text.hpp"

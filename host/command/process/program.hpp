@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "trial/exit_code.hpp"
+#include "trial/trial.hpp"
 
 namespace rouleau::command {
 

@@ -19,7 +19,7 @@
 #include "plan/estimate.hpp"
 #include "plan/placed_cells.hpp"
 #include "plan/solver_setup.hpp"
-#include "shape/fed_cells.hpp"
+#include "shape/random_cells.hpp"
 
 namespace rouleau::plan {
 

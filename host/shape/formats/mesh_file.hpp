@@ -24,4 +24,9 @@ double weld_reach(const core::TriangleSurface& surface);
 /// blame, for what is no surface of finite size that is closed, in one piece and without seams (core::Mesh).
 core::TriangleSurface read_mesh(const std::filesystem::path& file);
 
+/// Nodes that lie no farther apart than `distance` become one, at the place of the first of them; triangles that lose a
+/// corner so go. Returns how many nodes have gone; none where a triangle has a node that is not there. Throws
+/// std::invalid_argument where so many lie together that it would take for ever.
+int weld(core::TriangleSurface& surface, double distance);
+
 }  // namespace rouleau::shape

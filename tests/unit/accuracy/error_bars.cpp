@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "accuracy/refinement.hpp"
+#include "accuracy/measure_errors.hpp"
 
 using namespace rouleau;
 using namespace rouleau::accuracy;

@@ -1,5 +1,5 @@
 // Faults that are found together are said together: in the order of the text, some twenty of them, and how many more.
-#include "base/faults.hpp"
+#include "base/error.hpp"
 
 #include <catch2/catch.hpp>
 #include <optional>

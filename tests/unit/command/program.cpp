@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "base/faults.hpp"
-#include "command/lock_scene.hpp"
+#include "base/error.hpp"
+#include "command/manage_plugins.hpp"
 
 using namespace rouleau;
 using namespace rouleau::command;

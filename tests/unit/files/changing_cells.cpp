@@ -2,10 +2,9 @@
 #include <catch2/catch.hpp>
 #include <regex>
 
-#include "files/csv_reader.hpp"
 #include "files/file.hpp"
 #include "files/frames.hpp"
-#include "files/frames_check.hpp"
+#include "files/tables.hpp"
 #include "files/verify.hpp"
 #include "unit/run_fixture.hpp"
 

@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "base/error.hpp"
-#include "files/csv_reader.hpp"
 #include "files/file.hpp"
 #include "files/frames.hpp"
+#include "files/tables.hpp"
 #include "hdf5/hdf5_file.hpp"
 #include "scratch_folder.hpp"
 

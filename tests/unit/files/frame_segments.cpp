@@ -6,7 +6,6 @@
 #include <set>
 #include <sstream>
 
-#include "files/checksum.hpp"
 #include "files/file.hpp"
 #include "files/frames.hpp"
 #include "unit/run_fixture.hpp"

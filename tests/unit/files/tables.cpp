@@ -4,7 +4,6 @@
 #include <random>
 #include <sstream>
 
-#include "files/csv_reader.hpp"
 #include "files/file.hpp"
 #include "files/tables.hpp"
 #include "observe/observables.hpp"

@@ -1,5 +1,5 @@
 // Which failure a run ends with where several ranks have found one.
-#include "monitor/first_failure.hpp"
+#include "monitor/node_checks.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "observe/aggregate_words.hpp"
+#include "observe/aggregates.hpp"
 
 using namespace rouleau::observe;
 

@@ -4,7 +4,7 @@
 #include "plan/plan_report.hpp"
 #include "plan/potential_shape.hpp"
 #include "plan/read_scene.hpp"
-#include "plugin/handles.hpp"
+#include "plugin/model.hpp"
 
 using namespace rouleau;
 using namespace rouleau::plan;

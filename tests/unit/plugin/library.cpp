@@ -1,6 +1,6 @@
 // The opening of libraries: what is checked before loading, the loader's own words, and the tables inside.
 #include "plugin/library.hpp"
-#include "base/sha256.hpp"
+#include "base/input_file.hpp"
 
 #include <sys/stat.h>
 

@@ -1,6 +1,6 @@
 // Locks: what they hold, how damaged ones are refused, and that nothing else than what is locked is found or opened.
 #include "plugin/lock.hpp"
-#include "base/sha256.hpp"
+#include "base/input_file.hpp"
 
 #include "plugin/catalog.hpp"
 #include "plugin/library.hpp"

@@ -5,7 +5,6 @@
 #include "hdf5/hdf5_file.hpp"
 #include "report/report.hpp"
 #include "report/report_data.hpp"
-#include "report/vorticity.hpp"
 #include "unit/run_fixture.hpp"
 
 namespace hdf5 = rouleau::hdf5;

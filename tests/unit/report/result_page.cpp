@@ -1,4 +1,4 @@
-#include "report/result_page.hpp"
+#include "report/report.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -5,7 +5,7 @@
 
 #include "core/solver/solver.hpp"
 #include "observe/energy.hpp"
-#include "observe/particle_stress.hpp"
+#include "observe/rheology.hpp"
 #include "plan/placed_cells.hpp"
 #include "plan/solver_setup.hpp"
 #include "unit/blocks_fixture.hpp"

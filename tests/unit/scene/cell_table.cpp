@@ -1,5 +1,5 @@
 // Cells from CSV and HDF5 files.
-#include "scene/cell_table.hpp"
+#include "scene/cell_rows.hpp"
 
 #include <hdf5.h>
 

@@ -1,7 +1,7 @@
 // Cells that are shipped: what a scene takes of them, what it keeps, and what is wrong with a name.
 #include <catch2/catch.hpp>
 
-#include "base/sha256.hpp"
+#include "base/input_file.hpp"
 #include "json/schema.hpp"
 #include "scene/named_files.hpp"
 #include "scene/read_scene.hpp"

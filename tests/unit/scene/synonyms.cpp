@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "base/faults.hpp"
+#include "base/error.hpp"
 #include "json/schema.hpp"
 #include "json/schema_words.hpp"
 #include "scene/read_scene.hpp"

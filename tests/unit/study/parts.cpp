@@ -3,10 +3,9 @@
 #include <thread>
 
 #include "base/error.hpp"
-#include "files/file_lock.hpp"
+#include "files/file.hpp"
 #include "study_folder.hpp"
-#include "trial/fingerprint.hpp"
-#include "trial/run_cost.hpp"
+#include "trial/point_record.hpp"
 
 namespace {
 

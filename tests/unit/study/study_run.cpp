@@ -5,7 +5,7 @@
 
 #include "files/file.hpp"
 #include "json/schema.hpp"
-#include "study/study_files.hpp"
+#include "study/analysis_json.hpp"
 #include "study_folder.hpp"
 
 namespace {

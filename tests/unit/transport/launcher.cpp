@@ -1,4 +1,4 @@
-#include "transport/launcher.hpp"
+#include "transport/connection.hpp"
 
 #include <catch2/catch.hpp>
 #include <cstdlib>

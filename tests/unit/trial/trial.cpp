@@ -9,7 +9,7 @@
 #include <chrono>
 #include <thread>
 
-#include "trial/fingerprint.hpp"
+#include "trial/point_record.hpp"
 #include "unit/study/study_folder.hpp"
 
 namespace {

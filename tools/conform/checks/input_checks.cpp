@@ -12,7 +12,7 @@
 #include "conform/isolation/counted_functions.hpp"
 #include "conform/subject.hpp"
 #include "plugin/library.hpp"
-#include "plugin/parameter_ranges.hpp"
+#include "plugin/parameters.hpp"
 #include "plugin/quantities.hpp"
 
 namespace rouleau::conform {

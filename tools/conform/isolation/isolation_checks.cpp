@@ -24,7 +24,6 @@
 #include "frozen_memory.hpp"
 #include "plugin/library.hpp"
 #include "plugin/process_state.hpp"
-#include "plugin/table_checks.hpp"
 #include "system_calls.hpp"
 #include "worlds.hpp"
 
