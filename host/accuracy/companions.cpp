@@ -1,6 +1,7 @@
 #include "companions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -286,17 +287,8 @@ void add_runs(const scene::Scene& scene, const CoarserLattices& lattices, const 
 }  // namespace
 
 const char* name_of(Role role) {
-  switch (role) {
-    case Role::lattice:
-      return "lattice";
-    case Role::order:
-      return "order";
-    case Role::start:
-      return "start";
-    case Role::inertia:
-      return "inertia";
-  }
-  return "";
+  constexpr std::array words{"lattice", "order", "start", "inertia"};
+  return words.at(static_cast<std::size_t>(role));
 }
 
 Companions choose_companions(const scene::Scene& scene, const RunCost& cost, double most_compressed) {

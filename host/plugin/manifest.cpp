@@ -25,15 +25,8 @@ constexpr std::array roles{
 }  // namespace
 
 const char* to_string(ModelKind kind) {
-  switch (kind) {
-    case ModelKind::collision:
-      return "collision";
-    case ModelKind::membrane:
-      return "membrane";
-    case ModelKind::interaction:
-      return "interaction";
-  }
-  return "unknown";
+  constexpr std::array words{"collision", "membrane", "interaction"};
+  return words.at(static_cast<std::size_t>(kind) - 1);
 }
 
 const RoleFacts& facts_of(Role role) { return roles.at(static_cast<std::size_t>(role)); }

@@ -1,82 +1,14 @@
 #include "quantities.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 namespace rouleau::plugin {
 
-namespace {
-
-struct Quantity {
-  units::Dimension dimension;
-  const char* unit;
-};
-
-/// Lengths of the two-dimensional world are metres; what is per unit depth there is so in SI, too. Stresses, energies
-/// per length there and per area in three dimensions have the same unit then.
-const Quantity& quantity_of(const Manifest& manifest, const std::string& name) {
-  static const Quantity number{{}, ""};
-  static const std::map<std::string, Quantity> quantities = {{"stretch", number},
-                                                             {"stretch_rate", {{{0, 0, -1}}, "1/s"}},
-                                                             {"curvature", {{{0, -1, 0}}, "1/m"}},
-                                                             {"rest_curvature", {{{0, -1, 0}}, "1/m"}},
-                                                             {"area", {{{0, 2, 0}}, "m2"}},
-                                                             {"rest_area", {{{0, 2, 0}}, "m2"}},
-                                                             {"perimeter", {{{0, 1, 0}}, "m"}},
-                                                             {"rest_perimeter", {{{0, 1, 0}}, "m"}},
-                                                             {"invariant_1", number},
-                                                             {"invariant_2", number},
-                                                             {"area_ratio", number},
-                                                             {"volume", {{{0, 3, 0}}, "m3"}},
-                                                             {"rest_volume", {{{0, 3, 0}}, "m3"}},
-                                                             {"surface_area", {{{0, 2, 0}}, "m2"}},
-                                                             {"rest_surface_area", {{{0, 2, 0}}, "m2"}},
-                                                             {"tension", {{{1, 0, -2}}, "N/m"}},
-                                                             {"moment", {{{1, 1, -2}}, "N"}},
-                                                             {"pressure", {{{1, -1, -2}}, "Pa"}},
-                                                             {"perimeter_tension", {{{1, 0, -2}}, "N/m"}},
-                                                             {"stress_1", {{{1, 0, -2}}, "N/m"}},
-                                                             {"stress_2", {{{1, 0, -2}}, "N/m"}},
-                                                             {"area_tension", {{{1, 0, -2}}, "N/m"}},
-                                                             {"shear_viscosity", {{{1, 0, -1}}, "N s/m"}},
-                                                             {"area_viscosity", {{{1, 0, -1}}, "N s/m"}},
-                                                             {"surface_tension", {{{1, 0, -2}}, "N/m"}},
-                                                             {"energy", {{{1, 0, -2}}, "J/m2"}},
-                                                             {"tension_by_stretch", {{{1, 0, -2}}, "N/m"}},
-                                                             {"tension_by_rate", {{{1, 0, -1}}, "N s/m"}},
-                                                             {"moment_by_curvature", {{{1, 2, -2}}, "J"}},
-                                                             {"stress_1_by_1", {{{1, 0, -2}}, "N/m"}},
-                                                             {"stress_1_by_2", {{{1, 0, -2}}, "N/m"}},
-                                                             {"stress_2_by_2", {{{1, 0, -2}}, "N/m"}},
-                                                             {"area_tension_by_ratio", {{{1, 0, -2}}, "N/m"}},
-                                                             {"distance", {{{0, 1, 0}}, "m"}},
-                                                             {"normal_velocity", {{{0, 1, -1}}, "m/s"}},
-                                                             {"tangential_velocity", {{{0, 1, -1}}, "m/s"}},
-                                                             {"sliding_speed", {{{0, 1, -1}}, "m/s"}},
-                                                             {"force", {{{1, -1, -2}}, "Pa"}},
-                                                             {"force_by_distance", {{{1, -2, -2}}, "Pa/m"}}};
-  static const Quantity energy_of_cell[2] = {{{{1, 1, -2}}, "J/m"}, {{{1, 2, -2}}, "J"}};  // by dimension
-  if (manifest.kind == ModelKind::collision) return number;
-  const bool of_cell = manifest.gives_output("pressure") || manifest.gives_output("perimeter_tension") ||
-                       manifest.gives_output("surface_tension");
-  if (name != "energy" || !of_cell) return quantities.at(name);
-  return energy_of_cell[manifest.dimension() - 2];
-}
-
-}  // namespace
-
 const char* to_string(MembraneElement element) {
-  switch (element) {
-    case MembraneElement::segment:
-      return "segment";
-    case MembraneElement::triangle:
-      return "triangle";
-    case MembraneElement::node:
-      return "node";
-    case MembraneElement::cell:
-      return "cell";
-  }
-  return "unknown";
+  constexpr std::array words{"segment", "triangle", "node", "cell"};
+  return words.at(static_cast<std::size_t>(element));
 }
 
 const std::vector<std::string>& inputs_of(ModelKind kind, int dimension) {
@@ -121,10 +53,39 @@ std::optional<MembraneElement> element_of(const std::string& name) {
   return std::nullopt;
 }
 
-units::Dimension dimension_of(const Manifest& manifest, const std::string& name) {
-  return quantity_of(manifest, name).dimension;
+std::string unit_of(const Manifest& manifest, const std::string& name) {
+  // Lengths of the two-dimensional world are metres; what is per unit depth there is so in SI, too. Stresses, energies
+  // per length there and per area in three dimensions have the same unit then.
+  static const std::map<std::string, std::vector<std::string>> names = {
+      {"1/s", {"stretch_rate"}},
+      {"1/m", {"curvature", "rest_curvature"}},
+      {"m", {"perimeter", "rest_perimeter", "distance"}},
+      {"m2", {"area", "rest_area", "surface_area", "rest_surface_area"}},
+      {"m3", {"volume", "rest_volume"}},
+      {"m/s", {"normal_velocity", "tangential_velocity", "sliding_speed"}},
+      {"N/m",
+       {"tension", "perimeter_tension", "stress_1", "stress_2", "area_tension", "surface_tension", "tension_by_stretch",
+        "stress_1_by_1", "stress_1_by_2", "stress_2_by_2", "area_tension_by_ratio"}},
+      {"N s/m", {"shear_viscosity", "area_viscosity", "tension_by_rate"}},
+      {"N", {"moment"}},
+      {"J", {"moment_by_curvature"}},
+      {"J/m2", {"energy"}},
+      {"Pa", {"pressure", "force"}},
+      {"Pa/m", {"force_by_distance"}}};
+  if (manifest.kind == ModelKind::collision) return "";
+  const bool of_cell = manifest.gives_output("pressure") || manifest.gives_output("perimeter_tension") ||
+                       manifest.gives_output("surface_tension");
+  if (name == "energy" && of_cell) return manifest.dimension() == 2 ? "J/m" : "J";
+  for (const auto& [unit, own] : names) {
+    if (std::find(own.begin(), own.end(), name) != own.end()) return unit;
+  }
+  return "";
 }
 
-std::string unit_of(const Manifest& manifest, const std::string& name) { return quantity_of(manifest, name).unit; }
+units::Dimension dimension_of(const Manifest& manifest, const std::string& name) {
+  static const units::Units units;
+  const std::string unit = unit_of(manifest, name);
+  return units.dimension(unit.empty() ? "1" : unit);
+}
 
 }  // namespace rouleau::plugin
