@@ -83,6 +83,16 @@ int likeness(const Json& rule, const Json& value) {
   return score;
 }
 
+/// The value has another word where the branch has a fixed one: {"kind": "gap"} is not meant by a branch of "speed".
+bool has_other_word(const Json& rule, const Json& value) {
+  if (!value.is_object() || !rule.contains("properties")) return false;
+  const auto& members = rule["properties"].items();
+  return std::any_of(members.begin(), members.end(), [&](const auto& member) {
+    return member.value().contains("const") && value.contains(member.key()) &&
+           value[member.key()] != member.value()["const"];
+  });
+}
+
 void add_once(std::vector<std::string>& list, const std::string& word) {
   if (std::find(list.begin(), list.end(), word) == list.end()) list.push_back(word);
 }
@@ -187,6 +197,10 @@ Choice::Choice(const Json& schema, const Json& branches, const Json& value) {
                              : std::any_of(words_of_branch.begin(), words_of_branch.end(),
                                            [&](const Json& word) { return word.type() == value.type(); });
     if (!of_type) continue;
+    if (has_other_word(rule, value)) {
+      for (const auto& key : keys_of(rule["properties"])) add_once(other_keys, key);
+      continue;
+    }
     possible.push_back(&rule);
     only_words = only_words && !words_of_branch.empty();
     scores.push_back(likeness(rule, value));

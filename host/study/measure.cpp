@@ -5,9 +5,8 @@
 #include <numbers>
 
 #include "base/text.hpp"
-#include "files/csv_reader.hpp"
 #include "files/file.hpp"
-#include "history.hpp"
+#include "files/tables.hpp"
 #include "json/document.hpp"
 #include "plan/read_scene.hpp"
 #include "quantity.hpp"

@@ -2,109 +2,154 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
 #include <numbers>
 
 #include "base/synonyms.hpp"
+#include "base/text.hpp"
 #include "json/document.hpp"
+#include "json/json_pointer.hpp"
+#include "json/shown.hpp"
 #include "observe/observables.hpp"
-#include "study_reader.hpp"
+#include "scene/scene_reader.hpp"
 
 namespace rouleau::study {
 
 namespace {
 
-/// What the kinds have in common, in the order of QuantityKind.
+/// What the kinds have in common, in the order of QuantityKind; study.schema.json has their keys.
 struct KindTraits {
   const char* name;
   const char* unit;
   ErrorKind error;
   double target;  ///< 1 %, or what the field takes for good
-  std::vector<std::string> needed, optional;
   bool exactly_zero = false;
 };
 
 const std::array<KindTraits, 15>& kinds() {
   using enum ErrorKind;
   static const std::array<KindTraits, 15> table{{
-      {"deformation", "", relative, 0.01, {}, {"cell", "at"}},
-      {"angle", "deg", absolute, 1, {}, {"cell", "at"}},
-      {"area_drift", "", absolute, 1e-3, {}, {}, true},
-      {"mass_drift", "", absolute, 1e-9, {}, {}, true},
-      {"passage", "", relative, 0.01, {"angle"}, {"cell"}},
-      {"period", "", relative, 0.01, {}, {"cell", "of", "turns", "from_strain"}},
-      {"gap", "m", relative, 0.01, {}, {"cell", "at"}},
-      {"speed", "m/s", relative, 0.01, {}, {"cell", "along", "from_time"}},
-      {"contact_area", "m2", relative, 0.01, {}, {"at"}},
-      {"contact_length", "m", relative, 0.01, {}, {"at"}},
-      {"dissociation_strain", "", relative, 0.1, {}, {"count", "for_good"}},
-      {"aggregate_count", "", absolute, 0.5, {}, {}},
-      {"relative_viscosity", "", relative, 0.01, {}, {"at", "intrinsic"}},
-      {"velocity_l2", "", absolute, 0.01, {"flow"}, {"steady"}, true},
-      {"column", "", relative, 0.01, {"table", "column"}, {"cell", "at"}},
+      {"deformation", "", relative, 0.01},
+      {"angle", "deg", absolute, 1},
+      {"area_drift", "", absolute, 1e-3, true},
+      {"mass_drift", "", absolute, 1e-9, true},
+      {"passage", "", relative, 0.01},
+      {"period", "", relative, 0.01},
+      {"gap", "m", relative, 0.01},
+      {"speed", "m/s", relative, 0.01},
+      {"contact_area", "m2", relative, 0.01},
+      {"contact_length", "m", relative, 0.01},
+      {"dissociation_strain", "", relative, 0.1},
+      {"aggregate_count", "", absolute, 0.5},
+      {"relative_viscosity", "", relative, 0.01},
+      {"velocity_l2", "", absolute, 0.01, true},
+      {"column", "", relative, 0.01},
   }};
   return table;
 }
 
-double time_of(const StudyReader& reader, const std::string& pointer) {
-  return reader.scene_fields().quantity(pointer, "s", {0, scene::range::time.most});
+using Json = nlohmann::json;
+
+double time_of(const scene::SceneFields& fields, const std::string& pointer) {
+  return fields.quantity(pointer, "s", {0, scene::range::time.most});
 }
 
-When read_when(const StudyReader& reader, const std::string& pointer) {
-  if (reader.scene_fields().at(pointer).is_string()) {
-    reader.choice(pointer, {"end"});
-    return {};
-  }
-  const std::vector<std::string> keys{"strain", "time", "mean_from_strain", "mean_from_time"};
-  reader.only(pointer, keys, "\"at\"");
-  if (reader.scene_fields().at(pointer).size() != 1)
-    reader.scene_fields().refuse(pointer, "\"at\" is \"end\", or an object with one of " + listed(keys));
-  for (const auto& [key, kind] :
-       {std::pair("/time", When::Kind::time), {"/mean_from_time", When::Kind::mean_from_time}})
-    if (reader.has(pointer + key)) return {kind, time_of(reader, pointer + key)};
-  if (reader.has(pointer + "/strain")) return {When::Kind::strain, reader.number(pointer + "/strain")};
-  return {When::Kind::mean_from_strain, reader.number(pointer + "/mean_from_strain")};
+When read_when(const scene::SceneFields& fields, const std::string& pointer) {
+  const Json& written = fields.at(pointer);
+  if (written.is_string()) return {};
+  const std::string key = written.begin().key();
+  if (key == "strain") return {When::Kind::strain, written[key]};
+  if (key == "mean_from_strain") return {When::Kind::mean_from_strain, written[key]};
+  return {key == "time" ? When::Kind::time : When::Kind::mean_from_time, time_of(fields, pointer + "/" + key)};
 }
 
-void read_column(const StudyReader& reader, const std::string& pointer, Quantity& quantity) {
-  quantity.table =
-      std::array<const char*, 2>{"cells", "series"}[reader.choice(pointer + "/table", {"cells", "series"})];
-  quantity.column = reader.text(pointer + "/column");
+void read_column(const scene::SceneFields& fields, const std::string& pointer, Quantity& quantity) {
+  quantity.table = fields.at(pointer + "/table");
+  quantity.column = fields.at(pointer + "/column");
   const observe::Table& table = observe::table(quantity.table);
   std::vector<std::string> columns;
   for (const observe::Observable& observable : table.observables) columns.push_back(observable.column());
   const auto found = std::find(columns.begin(), columns.end(), quantity.column);
   if (found == columns.end()) {
-    reader.scene_fields().refuse(pointer + "/column",
-                                 quantity.table + ".csv has no column " + in_quotes(quantity.column) +
-                                     did_you_mean(quantity.column, columns) + "\nit has " + listed(columns));
+    fields.refuse(pointer + "/column", quantity.table + ".csv has no column " + in_quotes(quantity.column) +
+                                           did_you_mean(quantity.column, columns) + "\nit has " + listed(columns));
   }
   quantity.unit = table.observables[found - columns.begin()].unit;
 }
 
 /// Keys of one kind or a few.
-void read_own_keys(const StudyReader& reader, const std::string& pointer, Quantity& quantity) {
-  if (reader.has(pointer + "/cell"))
-    quantity.cell = reader.count(pointer + "/cell", 0);
-  else if (quantity.kind == QuantityKind::gap)
-    quantity.cell = -1;
-  if (reader.has(pointer + "/at")) quantity.at = read_when(reader, pointer + "/at");
-  if (reader.has(pointer + "/angle"))
-    quantity.passed_angle = reader.scene_fields().quantity(pointer + "/angle", "rad", scene::range::angle);
-  if (reader.has(pointer + "/of"))
-    quantity.of_long_axis = reader.choice(pointer + "/of", {"tank_treading", "rotation"}) == 1;
-  if (reader.has(pointer + "/turns")) quantity.turns = reader.positive(pointer + "/turns");
-  if (reader.has(pointer + "/from_strain")) quantity.from_strain = reader.number(pointer + "/from_strain");
-  if (reader.has(pointer + "/from_time")) quantity.from_time = time_of(reader, pointer + "/from_time");
-  if (quantity.kind == QuantityKind::speed) quantity.column = "x_m";
-  if (reader.has(pointer + "/along"))
-    quantity.column = std::array{"x_m", "y_m", "z_m"}[reader.choice(pointer + "/along", {"x", "y", "z"})];
-  if (reader.has(pointer + "/count")) quantity.count = reader.count(pointer + "/count", 1);
-  if (reader.has(pointer + "/for_good")) quantity.for_good = reader.yes(pointer + "/for_good");
-  if (reader.has(pointer + "/intrinsic")) quantity.intrinsic = reader.yes(pointer + "/intrinsic");
-  if (reader.has(pointer + "/flow"))
-    quantity.poiseuille = reader.choice(pointer + "/flow", {"couette", "poiseuille"}) == 1;
-  if (reader.has(pointer + "/steady")) quantity.steady = reader.yes(pointer + "/steady");
-  if (quantity.kind == QuantityKind::column) read_column(reader, pointer, quantity);
+void read_own_keys(const scene::SceneFields& fields, const std::string& pointer, Quantity& quantity) {
+  const Json& written = fields.at(pointer);
+  quantity.cell = written.value("cell", quantity.kind == QuantityKind::gap ? -1 : 0);
+  if (written.contains("at")) quantity.at = read_when(fields, pointer + "/at");
+  if (written.contains("angle"))
+    quantity.passed_angle = fields.quantity(pointer + "/angle", "rad", scene::range::angle);
+  quantity.of_long_axis = written.value("of", "") == "rotation";
+  quantity.turns = written.value("turns", quantity.turns);
+  if (written.contains("from_strain")) quantity.from_strain = written["from_strain"];
+  if (written.contains("from_time")) quantity.from_time = time_of(fields, pointer + "/from_time");
+  if (quantity.kind == QuantityKind::speed) quantity.column = written.value("along", "x") + "_m";
+  if (written.contains("count")) quantity.count = written["count"];
+  quantity.for_good = written.value("for_good", quantity.for_good);
+  quantity.intrinsic = written.value("intrinsic", quantity.intrinsic);
+  quantity.poiseuille = written.value("flow", "") == "poiseuille";
+  quantity.steady = written.value("steady", quantity.steady);
+  if (quantity.kind == QuantityKind::column) read_column(fields, pointer, quantity);
+}
+
+/// The number at a JSON pointer of a file that the study names.
+double number_of_file(const scene::SceneFields& fields, const json::Document& file, const std::string& pointer) {
+  const std::string inside = fields.line(pointer);
+  const auto tokens = json::split_pointer(inside);
+  if (!tokens) {
+    fields.refuse(pointer, in_quotes(inside) + " is no JSON pointer (for example \"/0/steady/D\")");
+  }
+  const nlohmann::json* at = &file.root();
+  std::string reached;
+  for (const std::string& token : *tokens) {
+    const auto index = json::array_index(token);
+    const nlohmann::json* next = nullptr;
+    if (at->is_object() && at->contains(token)) next = &at->at(token);
+    if (at->is_array() && index && *index < at->size()) next = &at->at(*index);
+    if (next == nullptr) {
+      std::vector<std::string> names;
+      if (at->is_object())
+        for (const auto& [name, value] : at->items()) names.push_back(name);
+      fields.refuse(pointer,
+                    file.file() + " has nothing at " + in_quotes(inside) + ": " +
+                        (reached.empty() ? "the document" : in_quotes(reached)) +
+                        (at->is_array() ? " has the entries 0 to " + std::to_string(static_cast<long>(at->size()) - 1)
+                                        : " has " + listed(names)) +
+                        did_you_mean(token, names));
+    }
+    at = next;
+    reached = json::child_pointer(reached, token);
+  }
+  if (!at->is_number())
+    fields.refuse(pointer,
+                  file.file() + " has " + json::shown(*at) + " at " + in_quotes(inside) + ", which is not a number");
+  return at->get<double>();
+}
+
+Reference reference_of_file(const scene::SceneFields& fields, const json::Document& document,
+                            const std::string& pointer) {
+  const nlohmann::json& written = fields.at(pointer);
+  const std::string name = fields.line(pointer + "/file");
+  const json::Document file = json::Document::read(std::filesystem::path(document.file()).parent_path() / name);
+  const double factor = written.value("factor", 1.0);
+  Reference result;
+  result.kind = ReferenceKind::file;
+  result.value = factor * number_of_file(fields, file, pointer + "/pointer") + written.value("offset", 0.0);
+  if (written.contains("uncertainty")) {
+    result.uncertainty = written["uncertainty"].is_string()
+                             ? std::abs(factor * number_of_file(fields, file, pointer + "/uncertainty"))
+                             : written["uncertainty"].get<double>();
+  }
+  result.source = fields.has(pointer + "/source") ? fields.line(pointer + "/source")
+                                                  : name + " " + fields.line(pointer + "/pointer");
+  return result;
 }
 
 }  // namespace
@@ -112,47 +157,82 @@ void read_own_keys(const StudyReader& reader, const std::string& pointer, Quanti
 const char* name_of(QuantityKind kind) { return kinds()[static_cast<std::size_t>(kind)].name; }
 
 Quantity read_quantity(const json::Document& document, const std::string& pointer) {
-  const scene::SceneFields scene_fields(document);
-  const StudyReader reader(scene_fields);
-  if (!scene_fields.at(pointer).is_object())
-    scene_fields.refuse(pointer, "a quantity is an object {\"name\", \"kind\", ...}");
-  for (const char* key : {"name", "kind"}) reader.needs(pointer, key, "a quantity");
-  std::vector<std::string> names;
-  for (const KindTraits& traits : kinds()) names.emplace_back(traits.name);
-  const std::size_t index = reader.choice(pointer + "/kind", names);
-  const KindTraits& traits = kinds()[index];
-
-  std::vector<std::string> keys{"name", "kind", "target", "reference", "error"};
-  keys.insert(keys.end(), traits.needed.begin(), traits.needed.end());
-  keys.insert(keys.end(), traits.optional.begin(), traits.optional.end());
-  const std::string whose = std::string("a quantity of kind ") + traits.name;
-  reader.only(pointer, keys, whose);
-  for (const std::string& key : traits.needed) reader.needs(pointer, key, whose);
-
+  const scene::SceneFields fields(document);
+  const Json& written = fields.at(pointer);
+  const auto traits = std::find_if(kinds().begin(), kinds().end(),
+                                   [&](const KindTraits& known) { return written["kind"] == known.name; });
   Quantity quantity;
-  quantity.name = reader.text(pointer + "/name");
-  quantity.kind = static_cast<QuantityKind>(index);
-  quantity.unit = traits.unit;
-  quantity.error = traits.error;
-  if (reader.has(pointer + "/error"))
-    quantity.error =
-        reader.choice(pointer + "/error", {"relative", "absolute"}) == 0 ? ErrorKind::relative : ErrorKind::absolute;
-  quantity.target = reader.has(pointer + "/target") ? reader.positive(pointer + "/target") : traits.target;
-  read_own_keys(reader, pointer, quantity);
-  if (reader.has(pointer + "/reference"))
-    quantity.reference = read_reference(scene_fields, document, pointer + "/reference");
-  if (traits.exactly_zero) {
-    if (reader.has(pointer + "/reference") && quantity.reference.kind != ReferenceKind::analytic)
-      scene_fields.refuse(pointer + "/reference",
-                          std::string(traits.name) + " should be exactly 0: leave the reference out");
+  quantity.name = fields.line(pointer + "/name");
+  quantity.kind = static_cast<QuantityKind>(traits - kinds().begin());
+  quantity.unit = traits->unit;
+  quantity.error = traits->error;
+  if (written.contains("error"))
+    quantity.error = written["error"] == "relative" ? ErrorKind::relative : ErrorKind::absolute;
+  quantity.target = written.value("target", traits->target);
+  read_own_keys(fields, pointer, quantity);
+  if (written.contains("reference")) quantity.reference = read_reference(document, pointer + "/reference");
+  if (traits->exactly_zero) {
+    if (written.contains("reference") && quantity.reference.kind != ReferenceKind::analytic)
+      fields.refuse(pointer + "/reference",
+                    std::string(traits->name) + " should be exactly 0: leave the reference out");
     quantity.reference = {ReferenceKind::analytic, 0, 0, "exactly zero", {}};
     if (quantity.kind == QuantityKind::velocity_l2) quantity.reference.source = "the exact flow";
   }
   if (quantity.error == ErrorKind::relative && quantity.reference.value == 0) {
-    scene_fields.refuse(reader.has(pointer + "/error") ? pointer + "/error" : pointer,
-                        "there is no error relative to a reference of 0: say \"error\": \"absolute\"");
+    fields.refuse(pointer + (written.contains("error") ? "/error" : ""),
+                  "there is no error relative to a reference of 0: say \"error\": \"absolute\"");
   }
   return quantity;
+}
+
+Reference read_reference(const json::Document& document, const std::string& pointer) {
+  const scene::SceneFields fields(document);
+  const nlohmann::json& written = fields.at(pointer);
+  Reference result;
+  if (written.is_string()) return result;
+  if (written.contains("file")) return reference_of_file(fields, document, pointer);
+  if (written.contains("value")) {
+    result.kind = ReferenceKind::value;
+    result.value = written["value"];
+    result.uncertainty = written.value("uncertainty", 0.0);
+    result.source = fields.has(pointer + "/source") ? fields.line(pointer + "/source") : "given in the study";
+  } else if (written.contains("analytic")) {
+    result = {ReferenceKind::analytic, 0, 0, "exactly zero", {}};
+  } else if (written.contains("point")) {
+    result.kind = ReferenceKind::point;
+    result.labels = written["point"];
+  } else {
+    result.labels = written["richardson"];
+  }
+  return result;
+}
+
+const char* name_of(ReferenceKind kind) {
+  constexpr std::array words{"value", "file", "analytic", "richardson", "point"};
+  return words.at(static_cast<std::size_t>(kind));
+}
+
+Dissociation dissociation(const std::vector<CountChange>& changes, const Column& output_strain, double start_time,
+                          double start_strain, int count, bool for_good) {
+  constexpr double not_a_value = std::numeric_limits<double>::quiet_NaN();
+  double found = not_a_value;  // over all stages, as in the tables
+  bool at_start = false;
+  for (const CountChange& change : changes) {
+    const bool enough = change.count >= count;
+    if (change.time <= start_time) {
+      at_start = enough;
+    } else if (!enough && for_good) {
+      found = not_a_value;
+      at_start = false;  // they met: what was apart when shear began can come apart
+    } else if (enough && std::isnan(found)) {
+      found = change.strain;
+    }
+  }
+  if (at_start) return {not_a_value, not_a_value, true};
+  double before = start_strain;
+  for (const double strain : output_strain)
+    if (strain < found) before = std::max(before, strain);
+  return {found - start_strain, found - before, false};
 }
 
 }  // namespace rouleau::study

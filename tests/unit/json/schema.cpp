@@ -109,6 +109,19 @@ TEST_CASE("a value that fits two branches of a oneOf is refused") {
   CHECK_THAT(message_of(R"({"a": 1})", schema), Contains("a.json:1:7 /a\n  a can be read in 2 ways"));
 }
 
+TEST_CASE("the branch of a oneOf is meant that has the fixed word of the value") {
+  const auto schema = Json::parse(R"({"oneOf": [
+      {"type": "object", "required": ["kind", "at"], "additionalProperties": false,
+       "properties": {"kind": {"const": "gap"}, "at": {"type": "number"}}},
+      {"type": "object", "required": ["kind"], "additionalProperties": false,
+       "properties": {"kind": {"const": "turn"}, "at": {}, "times": {}}}]})");
+  CHECK(message_of(R"({"kind": "turn", "at": true})", schema).empty());
+  CHECK(message_of(R"({"kind": "gap", "at": true})", schema) == "a.json:1:23 /at\n  found true; at wants a number");
+  CHECK(message_of(R"({"kind": "gap", "times": 2, "at": 1})", schema) ==
+        "a.json:1:17 /times\n  \"times\" cannot stand here together with the other keys\n"
+        "  allowed beside them: at, kind");
+}
+
 TEST_CASE("an object with more keys than it may have is refused") {
   const auto schema = Json::parse(R"({"properties": {"a": {"maxProperties": 1}}})");
   CHECK(message_of(R"({"a": {"b": 1}})", schema).empty());

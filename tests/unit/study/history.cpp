@@ -1,5 +1,5 @@
 // When aggregates come apart.
-#include "study/history.hpp"
+#include "study/quantity.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
