@@ -32,11 +32,11 @@ FieldNodes::Box FieldNodes::box() const {
 
 std::vector<double> FieldNodes::rows(const hdf5::File& file, const std::string& dataset, std::size_t begin,
                                      std::size_t end) const {
-  return values(file, dataset, {nz / 2, nz / 2 + 1}, {begin, end});
+  return values(file, dataset, {nz / 2, nz / 2 + 1}, {begin, end}, {0, nx});
 }
 
-std::vector<double> FieldNodes::values(const hdf5::File& file, const std::string& dataset, Range layers,
-                                       Range rows) const {
+std::vector<double> FieldNodes::values(const hdf5::File& file, const std::string& dataset, Range layers, Range rows,
+                                       Range columns) const {
   static_cast<void>(file.elements(dataset));  // refuses more than the file can hold
   const auto shape = file.shape(dataset);
   const std::size_t space = file.has_attribute("/", "periodic_z") ? 1 : 0;
@@ -48,7 +48,8 @@ std::vector<double> FieldNodes::values(const hdf5::File& file, const std::string
   std::vector<hsize_t> from(shape.size(), 0), to(shape.begin(), shape.end());
   if (space == 1) from[0] = layers[0], to[0] = layers[1];
   from[space] = rows[0], to[space] = rows[1];
-  std::vector<double> values((layers[1] - layers[0]) * (rows[1] - rows[0]) * nx *
+  from[space + 1] = columns[0], to[space + 1] = columns[1];
+  std::vector<double> values((layers[1] - layers[0]) * (rows[1] - rows[0]) * (columns[1] - columns[0]) *
                              (shape.size() > space + 2 ? shape.back() : 1));
   if (!values.empty()) file.read(dataset, H5T_NATIVE_DOUBLE, from, to, values.data());
   return values;

@@ -42,7 +42,11 @@ struct FieldNodes {
   }
   /// Of all rows of all layers.
   [[nodiscard]] std::vector<double> all(const hdf5::File& file, const std::string& dataset) const {
-    return values(file, dataset, {0, nz}, {0, ny});
+    return values(file, dataset, {0, nz}, {0, ny}, {0, nx});
+  }
+  /// On the plane across x through node nx / 2, all rows of all layers.
+  [[nodiscard]] std::vector<double> across(const hdf5::File& file, const std::string& dataset) const {
+    return values(file, dataset, {0, nz}, {0, ny}, {nx / 2, nx / 2 + 1});
   }
   std::size_t nx = 0, ny = 0;
   std::size_t nz = 1;                        ///< layers that the field has
@@ -51,8 +55,8 @@ struct FieldNodes {
 
  private:
   using Range = std::array<std::size_t, 2>;
-  [[nodiscard]] std::vector<double> values(const hdf5::File& file, const std::string& dataset, Range layers,
-                                           Range rows) const;
+  [[nodiscard]] std::vector<double> values(const hdf5::File& file, const std::string& dataset, Range layers, Range rows,
+                                           Range columns) const;
 };
 
 }  // namespace rouleau::files

@@ -6,7 +6,6 @@
 #include "base/error.hpp"
 #include "file.hpp"
 #include "hdf5/hdf5_rows.hpp"
-#include "middle_sections.hpp"
 #include "units/lattice_units.hpp"
 
 namespace rouleau::files {
@@ -256,11 +255,6 @@ std::size_t FrameReader::nodes(int frame) const {
   return file_.has(group) ? file_.shape(group + "/points").front() : 0;
 }
 
-observe::OutlineSnapshot FrameReader::outlines(int frame) const {
-  observe::OutlineSnapshot written = surfaces(frame);
-  return written.triangles.empty() ? written : middle_sections(written);
-}
-
 std::vector<int> cells_of(const hdf5::File& file, const std::string& group, const std::vector<int>& first) {
   const std::vector<double> of_node = file.read(group + "/cell");
   std::vector<int> cells;
@@ -274,7 +268,7 @@ std::vector<int> cells_of(const hdf5::File& file, const std::string& group, cons
   return cells;
 }
 
-observe::OutlineSnapshot FrameReader::surfaces(int frame) const {
+observe::OutlineSnapshot FrameReader::outlines(int frame) const {
   observe::OutlineSnapshot outlines;
   const std::string group = frame_path(static_cast<std::size_t>(frame)) + "/membranes";
   if (!file_.has(group)) return outlines;

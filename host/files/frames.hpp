@@ -104,6 +104,7 @@ class FrameReader {
   [[nodiscard]] std::array<double, 2> size() const;           ///< of the domain, m
   [[nodiscard]] std::array<double, 3> size_in_space() const;  ///< m, in three dimensions
   [[nodiscard]] bool periodic_x() const { return !file_.has_attribute("/", "periodic_x"); }
+  [[nodiscard]] bool in_space() const { return file_.has_attribute("/", "periodic_z"); }
   [[nodiscard]] bool periodic_z() const { return file_.read_attribute("/", "periodic_z") != 0; }
   [[nodiscard]] bool periodic_y() const { return file_.read_attribute("/", "periodic_y") != 0; }
   [[nodiscard]] WallBorder walls() const { return read_walls(file_); }
@@ -111,10 +112,8 @@ class FrameReader {
   /// Of the membranes, as they were written; 0 where the frame has none.
   [[nodiscard]] std::size_t nodes(int frame) const;
   [[nodiscard]] long step(int frame) const;
-  /// Empty (no cells) when the frame has no membranes. Of surfaces their middle sections (middle_sections.hpp).
+  /// Outlines or surfaces as written, without curvature. Empty (no cells) when the frame has no membranes.
   [[nodiscard]] observe::OutlineSnapshot outlines(int frame) const;
-  /// The same as it was written, of surfaces without their curvature.
-  [[nodiscard]] observe::OutlineSnapshot surfaces(int frame) const;
 
  private:
   hdf5::File file_;

@@ -1,8 +1,10 @@
 #include "report.hpp"
 
+#include <algorithm>
 #include <iostream>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "base/text.hpp"
 #include "files/file.hpp"
@@ -17,16 +19,33 @@ namespace rouleau::report {
 
 namespace {
 
-/// The page with what draws surfaces, where there are some.
-std::string report_page(const nlohmann::json& data) {
-  const bool has_surfaces = data.contains("surfaces") && !data["surfaces"].is_null();
+using Json = nlohmann::json;
+
+/// The page with what draws in space, where a run is there.
+std::string report_page(Json data) {
+  const auto is_in_space = [](const Json& run) {
+    return run.contains("domain") && run["domain"].contains("periodic_z");
+  };
+  const bool in_space =
+      data.contains("runs") ? std::any_of(data["runs"].begin(), data["runs"].end(), is_in_space) : is_in_space(data);
   constexpr std::string_view mark = "@ROULEAU_SPACE@";
   std::string page(report_template);
-  page.replace(page.find(mark), mark.size(), has_surfaces ? space_template : std::string_view{});
-  return page_with(page, data);
+  page.replace(page.find(mark), mark.size(), in_space ? space_template : std::string_view{});
+  return page_with(page, std::move(data));
 }
 
 namespace fs = std::filesystem;
+
+/// Leaves only the names of files: a page goes to others, who need not know the folders of its author.
+void remove_folders(Json& value) {
+  for (auto& [key, member] : value.items()) {
+    if (member.is_structured()) remove_folders(member);
+    const bool names_file = key.ends_with("library") || key == "directory" || key == "file" || key.ends_with("_file");
+    if (!names_file || !member.is_string()) continue;
+    const fs::path path = member.get<std::string>();
+    if (path.is_absolute()) member = path.filename().string();
+  }
+}
 
 /// A result's file, the key that says what it is, and what it is called.
 struct ResultPage {
@@ -55,9 +74,10 @@ fs::path write_result_page(const fs::path& directory, const ResultPage& kind) {
 
 std::filesystem::path write_report(const std::filesystem::path& directory, std::filesystem::path file) {
   if (file.empty()) file = directory / "report.html";
-  const nlohmann::json data = report_data(directory);
-  for (const auto& words : data["shown"]["damage"]) std::cerr << "warning: " << words.get<std::string>() << "\n";
-  files::write_file(file, report_page(data));
+  Json data = report_data(directory);
+  for (const auto& words : data["shown"]["damage"])
+    std::cerr << "warning: " << (directory / "").string() << words.get<std::string>() << "\n";
+  files::write_file(file, report_page(std::move(data)));
   return file;
 }
 
@@ -90,7 +110,8 @@ std::vector<fs::path> write_pages(const fs::path& directory) {
   return pages;
 }
 
-std::string page_with(std::string_view page, const nlohmann::json& data) {
+std::string page_with(std::string_view page, Json data) {
+  remove_folders(data);
   // "</script>" or "<!--" inside a string of the data would end the data early: "<" is written as its escape.
   // Everything the pages show is set as text, never as markup.
   std::string text;

@@ -22,8 +22,8 @@ std::filesystem::path write_limits_page(const std::filesystem::path& directory);
 std::vector<std::filesystem::path> write_pages(const std::filesystem::path& directory);
 
 /// `page` with its mark for the data replaced by `data`, in such a way that no text in the data can end it early or
-/// become markup.
-std::string page_with(std::string_view page, const nlohmann::json& data);
+/// become markup; of absolute paths to files their names alone.
+std::string page_with(std::string_view page, nlohmann::json data);
 
 /// (Re)makes `file`, DIR/report.html when empty, from DIR's files alone, and returns its path. Says on the terminal
 /// which of an ended run's files are damaged: the page shows what can be read. Throws Error(input_output) or, for a

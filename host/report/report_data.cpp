@@ -205,7 +205,7 @@ Json damage_of(const std::filesystem::path& directory, const Json& summary) {
   if (summary.contains("files")) {
     const auto shown_here = [](const std::string& name) { return name.ends_with(".csv") || name == "scene.json"; };
     for (const std::string& difference : files::verify(directory, shown_here).differences) {
-      damage.push_back((directory / "").string() + difference);
+      damage.push_back(difference);
     }
   }
   return damage;
@@ -230,13 +230,18 @@ void add_instants(const files::StoredTable& series, const std::vector<std::size_
 void add_frames(const files::FrameReader& reader, const std::filesystem::path& frames, const Selection& selection,
                 std::size_t stride, Json& data) {
   const auto size = reader.size();
+  const bool in_space = reader.in_space();
   data["domain"] = {{"size_um", {size[0] * micro, size[1] * micro}},
                     {"periodic_x", reader.periodic_x()},
                     {"periodic_y", reader.periodic_y()}};
-  Json outlines = stride > 0 ? outline_data(reader, selection, stride) : Json(), walls = wall_data(reader);
+  if (in_space) {
+    data["domain"]["size_um"].push_back(reader.size_in_space()[2] * micro);
+    data["domain"]["periodic_z"] = reader.periodic_z();
+  }
+  Json cells, walls = wall_data(reader);
+  if (stride > 0) cells = in_space ? surface_data(reader, selection) : outline_data(reader, selection, stride);
   data["fields"] = field_data(frames, selection);
-  data["outlines"] = std::move(outlines), data["walls"] = std::move(walls);
-  if (stride > 0) data["surfaces"] = surface_data(reader, selection);
+  data[in_space ? "surfaces" : "outlines"] = std::move(cells), data["walls"] = std::move(walls);
 }
 
 std::string words_without_cells(std::uintmax_t bytes) {
@@ -283,7 +288,7 @@ Json report_data(const std::filesystem::path& directory) {
   // A run that goes on, or was killed, may lack the last rows of a file; one that has ended may not.
   const auto take = [&](const char* file, std::size_t has) {
     if (ended && has < series.rows()) {
-      damage.push_back((directory / file).string() + " holds " + std::to_string(has) + " of the " +
+      damage.push_back(std::string(file) + " holds " + std::to_string(has) + " of the " +
                        std::to_string(series.rows()) + " outputs of series.csv: it was cut short; bring the whole " +
                        "file back, or run the scene again. What is shown here ends where it ends.");
     }
@@ -295,8 +300,11 @@ Json report_data(const std::filesystem::path& directory) {
   std::string note;
   const auto without_animation = [&](const Error& error) {  // the rest of the page is worth having
     reader.reset();
-    note = std::string("No animation: ") + error.what();
-    if (ended) damage.push_back(error.what());
+    std::string words = error.what();
+    const std::string folder = (directory / "").string();
+    for (auto at = words.find(folder); at != std::string::npos; at = words.find(folder)) words.erase(at, folder.size());
+    note = "No animation: " + words;
+    if (ended) damage.push_back(words);
   };
   if (!cells) note = words_without_cells(bytes);
   std::size_t nodes = 0;
@@ -313,7 +321,7 @@ Json report_data(const std::filesystem::path& directory) {
                " nodes of membranes, and a page is made of up to " + std::to_string(most_nodes_read) +
                ". frames.h5 has all of them.";
       }
-      if (drawn) nodes = reader->outlines(fullest).x.size();  // of their sections, where they are surfaces
+      if (drawn && !reader->in_space()) nodes = reader->nodes(fullest);  // surfaces are thinned on their own
       with_fields = field_outputs(directory / "frames.h5", most_fields);
     }
   } catch (const Error& error) {
@@ -338,7 +346,7 @@ Json report_data(const std::filesystem::path& directory) {
       without_animation(error);
     }
   }
-  if (note.empty() && count > 0 && outputs > 0 && data["outlines"].is_null())
+  if (note.empty() && count > 0 && outputs > 0 && data["outlines"].is_null() && data["surfaces"].is_null())
     note = "No animation: the number of membrane nodes changes during the run.";
   data["shown"]["note"] = note;
   data["shown"]["damage"] = damage;

@@ -25,8 +25,9 @@ bool has_run(const std::filesystem::path& directory);
 ///             at some shown output, by their numbers `ids`, types and the shown output with which their lines begin;
 ///             without `from` all lines have all outputs; aggregate by output and cell, null or cut off where that is
 ///             not there; beside what has a chart speed_um_per_s, of the centroid
-///   domain    {size_um, periodic_x, periodic_y}; absent without frames
+///   domain    {size_um, periodic_x, periodic_y}, in space with z and periodic_z; absent without frames
 ///   outlines  outline_data() of the shown outputs (report_outlines.hpp), or null
+///   surfaces  surface_data() of them (report_surfaces.hpp) in space, or null
 ///   fields    field_data() of the shown outputs (report_fields.hpp), or null
 /// Undefined numbers are null. Throws Error(bad_input) when the directory is no run's.
 nlohmann::json report_data(const std::filesystem::path& directory);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -96,6 +98,49 @@ class Tracers {
   static constexpr std::size_t most_each = 2048, most_of_all = 120000;  ///< blocks: 0.3 MB of page
   std::size_t most_;
   std::array<std::vector<ScalarField>, 2> fields_;
+};
+
+/// Velocities along x on the plane across x in the middle, for profiles: as field_data has them.
+class AcrossFlow {
+ public:
+  AcrossFlow(const files::FieldNodes& grid, std::size_t outputs)
+      : grid_(grid), most_(std::min(most_each, most_of_all / outputs)) {}
+  void add(const hdf5::File& file, const std::string& dataset) {
+    const std::vector<double> vectors = grid_.across(file, dataset);
+    const std::size_t components = vectors.size() / (grid_.ny * grid_.nz);
+    BlockMeans means(grid_.ny, grid_.nz, most_);
+    for (std::size_t z = 0; z < grid_.nz; ++z)
+      means.add_row([&](std::size_t y) { return vectors[components * (z * grid_.ny + y)]; });
+    fields_.push_back(means.means());
+  }
+  [[nodiscard]] Json to_json() const {
+    double largest = 0;
+    for (const ScalarField& field : fields_)
+      for (const double u : field.values)
+        if (std::isfinite(u)) largest = std::max(largest, std::abs(u));
+    const double quantum = largest > 0 ? largest / std::numeric_limits<std::int16_t>::max() : 1;
+    Json values = Json::array();
+    for (const ScalarField& field : fields_) {
+      std::vector<unsigned char> bytes;
+      for (const double u : field.values) append_place(bytes, u, quantum);
+      values.push_back(base64(bytes));
+    }
+    const auto& [x, y, z] = grid_.first;
+    return {{"ny", fields_.front().nx},
+            {"nz", fields_.front().ny},
+            {"x_um", (x + double(grid_.nx / 2) * grid_.spacing[0]) * micro},
+            {"box_um",
+             {(y - grid_.spacing[1] / 2) * micro, (z - grid_.spacing[2] / 2) * micro,
+              grid_.spacing[1] * double(grid_.ny) * micro, grid_.spacing[2] * double(grid_.nz) * micro}},
+            {"quantum_um_per_s", quantum * micro},
+            {"values", values}};
+  }
+
+ private:
+  static constexpr std::size_t most_each = 1600, most_of_all = 40000;  ///< blocks: 0.1 MB of page
+  const files::FieldNodes& grid_;
+  std::size_t most_;
+  std::vector<ScalarField> fields_;
 };
 
 /// A field of a file, read some rows at a time.
@@ -217,11 +262,14 @@ Json field_data(const std::filesystem::path& frames, const std::vector<std::size
   Quantity speeds{"speed", "m/s", false, {}}, vorticities{"vorticity", "1/s", true, {}};
   const files::FieldNodes grid(file, group_of(with_fields.front()) + (has_velocity ? "velocity" : "vorticity"));
   Tracers tracers(with_fields.size());
+  std::optional<AcrossFlow> across;
+  if (has_velocity && grid.nz > 1) across.emplace(grid, with_fields.size());
   const std::size_t quantities = has_velocity ? 2 : 1;
   const std::size_t most = std::min(most_blocks, most_values / (quantities * with_fields.size()));
   for (const std::size_t output : with_fields) {
     if (has_velocity) {
       VelocityMeans means = add_velocity(file, grid, group_of(output) + "velocity", most, !has_vorticity, tracers);
+      if (across) across->add(file, group_of(output) + "velocity");
       speeds.fields.push_back(std::move(means.speed));
       if (!has_vorticity) vorticities.fields.push_back(std::move(means.vorticity));
     }
@@ -234,6 +282,8 @@ Json field_data(const std::filesystem::path& frames, const std::vector<std::size
               {"derived", !has_vorticity},
               {"quantities", Json::array()}};
   result["velocity"] = has_velocity ? tracers.to_json() : Json();
+  result["across"] = across ? across->to_json() : Json();
+  if (grid.nz > 1) result["z_um"] = (grid.first[2] + double(grid.nz / 2) * grid.spacing[2]) * micro;
   if (has_velocity) result["quantities"].push_back(to_json(speeds));
   result["quantities"].push_back(to_json(vorticities));
   return result;

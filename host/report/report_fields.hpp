@@ -22,7 +22,7 @@ struct ScalarField {
 /// Outputs of a frames.h5 whose fields a report can draw (velocity or vorticity), at most `most`, evenly thinned.
 std::vector<std::size_t> field_outputs(const std::filesystem::path& frames, std::size_t most);
 
-/// {nx, ny, box_um, outputs, quantities, velocity, derived} of the shown outputs `selection` that have fields; null
+/// {nx, ny, box_um, outputs, quantities, velocity, across, derived} of the shown outputs `selection` that have fields; null
 /// when none has.
 ///   box_um       [x, y, width, height] of what the blocks cover: the domain, or the region that was written
 ///   outputs      positions in `selection`
@@ -32,6 +32,9 @@ std::vector<std::size_t> field_outputs(const std::filesystem::path& frames, std:
 ///                clipped is true
 ///   velocity     {nx, ny, scale, values: [base64 of nx x ny pairs of int8]} on a coarser grid of the same box: u and v
 ///                over scale (m/s) times 127; null where no velocity was written
+///   across       in space, of velocities along x on a plane across x: {ny, nz, x_um, box_um [y, z, width, height],
+///                quantum_um_per_s, values: [base64 of nz x ny int16, in quanta]}; null in the plane
+///   z_um         in space, the layer of which quantities and velocity are
 ///   derived      vorticity was computed here, from the velocity
 nlohmann::json field_data(const std::filesystem::path& frames, const std::vector<std::size_t>& selection);
 

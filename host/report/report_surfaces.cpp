@@ -80,7 +80,7 @@ Json surface_data(const files::FrameReader& reader, const std::vector<std::size_
     const std::size_t here = reader.nodes(static_cast<int>(output));
     if (here > nodes) nodes = here, fullest = output;
   }
-  if (nodes == 0 || reader.surfaces(static_cast<int>(fullest)).triangles.empty()) return nullptr;
+  if (nodes == 0 || reader.outlines(static_cast<int>(fullest)).triangles.empty()) return nullptr;
   const std::array<double, 3> size = reader.size_in_space();
   const double quantum = quantum_of(std::hypot(size[0], size[1], size[2]));
   Json result{{"size_um", {size[0] * micro, size[1] * micro, size[2] * micro}},
@@ -89,7 +89,7 @@ Json surface_data(const files::FrameReader& reader, const std::vector<std::size_
               {"outputs", Json::array()},
               {"origin_um", Json::array()},
               {"nodes", Json::array()}};
-  const double scale = tension_scale([&](int output) { return reader.surfaces(output); }, selection);
+  const double scale = tension_scale([&](int output) { return reader.outlines(output); }, selection);
   result["tension"] = {{"scale_N_per_m", scale}, {"values", Json::array()}};
   const std::size_t kept =
       std::clamp<std::size_t>(most_surface_points / nodes, 2, std::max<std::size_t>(2, selection.size()));
@@ -100,7 +100,7 @@ Json surface_data(const files::FrameReader& reader, const std::vector<std::size_
     const std::size_t place = k * (selection.size() - 1) / (kept - 1);
     if (place == last) continue;
     last = place;
-    const observe::OutlineSnapshot surfaces = reader.surfaces(static_cast<int>(selection[place]));
+    const observe::OutlineSnapshot surfaces = reader.outlines(static_cast<int>(selection[place]));
     if (!layout.add(surfaces)) return nullptr;
     meshes.add(surfaces);
     result["outputs"].push_back(place);

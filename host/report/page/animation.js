@@ -3,9 +3,12 @@
 class View {
   constructor(runs) {
     const names = new Set(runs.flatMap(run => Object.keys(cellColours(run))));
-    Object.assign(this, {field: "", tracers: true, cell: null, hovered: null, follow: false, listeners: [], colour: ["aggregate", "cell"].find(name => names.has(name)) ?? (names.has("tension") && runs[0].surfaces ? "tension" : "grey"), before: null});
+    const wanted = names.has("blood") ? [names.has("cell") ? "blood" : "tension"] : ["aggregate", "cell"];
+    Object.assign(this, {field: "", tracers: true, cell: null, hovered: null, follow: false, listeners: [], turned: [], camera: null, colour: wanted.find(name => names.has(name)) ?? "grey", before: null});
   }
   changed() { for (const listener of this.listeners) listener(); }
+  /// All boxes of a page are seen from one side.
+  turn() { for (const listener of this.turned) listener(); }
   /// Cells are grey over a field, and get their colours back without one.
   setField(name) {
     if (name && !this.field) { this.before = this.colour; this.colour = "grey"; }
@@ -19,12 +22,31 @@ class View {
   choose(cell) { this.cell = cell === this.cell ? null : cell; this.follow &&= this.cell !== null; this.changed(); }
 }
 
+/// A round length in um, at most `most`.
+const barLength = most => [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].filter(b => b <= most).pop() || most;
+
+/// The lower and the upper wall, {speed, gone}: um/s along x, and um since the run began; of an animation or a box in space. Speeds are
+/// from the fields where there are some, else of walls that move against each other.
+function wallMotion(view) {
+  const {data, timeline, run, fields, ly} = view, output = timeline.output(run), rate = data.shear_rate?.[output] ?? null, still = {speed: 0, gone: 0};
+  if (rate === null) return [still, still];
+  const flow = fields?.moves ? fields.between(view.between) : null, isOfStage = flow && data.stage[fields.fields.outputs[flow.a]] === data.stage[output];
+  const middle = isOfStage ? meanOfWalls(fields.velocity(flow), data.domain.size_um, Math.abs(rate)) : 0, {a, b, share} = view.between, between = name => (data[name][a] ?? 0) + share * ((data[name][b] ?? 0) - (data[name][a] ?? 0));
+  return [-1, 1].map(side => ({speed: middle + side * rate * ly / 2, gone: middle ? (middle + side * rate * ly / 2) * between("time_s") : side * Math.sign(rate) * between("strain") * ly / 2}));
+}
+function meanOfWalls(velocity, [lx, ly], rate) {
+  const few = 16, mean = y => Array.from({length: few}, (_, i) => velocity((i + .5) / few * lx, y)?.[0] ?? 0).reduce((a, b) => a + b) / few, speed = (mean(ly * .001) + mean(ly * .999)) / 2;
+  return Math.abs(speed) > .05 * rate * ly ? speed : 0;
+}
+/// Where the fluid is driven along x: 1 or -1, else 0.
+const drivenAlong = run => Math.sign((run.summary?.rheology ?? []).map(stage => stage.means?.mean_velocity_m_per_s?.mean).findLast(Number.isFinite) ?? 0);
+
 /// The cells of a run at the timeline's instant, with the flow under them. Drag to move it; + and -, or two fingers, to come
 /// closer.
 class Animation {
-  constructor(parent, timeline, run, view) {
+  constructor(parent, timeline, run, view, section = null) {
     const data = timeline.runs[run];
-    Object.assign(this, {timeline, run, data, view, outlines: data.outlines && new Outlines(data.outlines), fields: data.fields && new Fields(data), colours: cellColours(data), stages: stagesOf(data), zoom: 1});
+    Object.assign(this, {timeline, run, data, view, section, outlines: section ?? (data.outlines && new Outlines(data.outlines)), fields: data.fields && new Fields(data), colours: cellColours(data), stages: stagesOf(data), zoom: 1});
     [this.lx, this.ly] = data.domain.size_um;
     this.centre = [this.lx / 2, this.ly / 2];
     this.walls = !data.domain.periodic_y;
@@ -33,7 +55,7 @@ class Animation {
     this.tip = element("div", {class: "tip", role: "status", hidden: ""});
     this.bar = element("div", {class: "bar"});
     this.cellBar = element("div", {class: "bar cells"});
-    parent.append(element("div", {class: "view-box"}, this.canvas, this.tip), element("div", {class: "bars"}, this.cellBar, this.bar));
+    parent.append(element("div", {class: "view-box"}, this.canvas, this.tip), element("div", {class: "bars"}, ...(isInSpace(data) ? [] : [this.cellBar]), this.bar));
     timeline.listeners.push(() => this.draw());
     view.listeners.push(() => { this.showBars(); this.draw(); });
     new ResizeObserver(() => { if (this.canvas.clientWidth !== this.width) this.draw(); }).observe(this.canvas);
@@ -41,30 +63,32 @@ class Animation {
     this.showBars();
   }
   description() {
-    const {data} = this, cells = data.outlines ? data.outlines.first.length - 1 : 0;
-    return `Animation: ${cells ? `outlines of ${cells} ${cells === 1 ? "cell" : "cells"}${hasTraffic(data) ? ", which come and leave" : ""}` : "the flow"} in a box of ${format(this.lx, 3)} by ${format(this.ly, 3)} µm. Space plays, arrow keys step, plus and minus or two fingers zoom.`;
+    const {data} = this, cells = this.outlines?.count ?? 0;
+    return `Animation: ${cells ? `${this.section ? "a section through" : "outlines of"} ${cells} ${cells === 1 ? "cell" : "cells"}${hasTraffic(data) ? ", which come and leave" : ""}` : "the flow"} in a box of ${format(this.lx, 3)} by ${format(this.ly, 3)} µm. Space plays, arrow keys step, plus and minus or two fingers zoom.`;
   }
   showBars() { this.cellBar.replaceChildren(...(this.colours[this.view.colour] ?? this.colours.grey)?.bar() ?? []); }
 
   // ---- what is where
   stageAt(output) { return this.stages.findLast(stage => stage.from <= output); }
   get between() { return this.timeline.between(this.run); }
-  nodes() { return this.outlines.between(this.between); }
-  centreOf(nodes, cell) {
-    const {first} = this.outlines, sum = [0, 0];
-    for (let i = first[cell]; i < first[cell + 1]; ++i) { sum[0] += nodes[2 * i]; sum[1] += nodes[2 * i + 1]; }
-    return sum.map(s => s / (first[cell + 1] - first[cell]));
+  shapes(withTension = false) { return this.outlines.shapes(this.between, withTension); }
+  /// Of the longest line of a cell.
+  centreOf(shapes, cell) {
+    const {xy} = shapes[cell].reduce((best, line) => line.xy.length > best.xy.length ? line : best), sum = [0, 0];
+    for (let i = 0; i < xy.length; ++i) sum[i % 2] += xy[i];
+    return sum.map(s => 2 * s / xy.length);
   }
   /// The cell at a point of the canvas, or null.
   cellAt(px, py) {
     if (!this.outlines || !this.scale) return null;
-    const nodes = this.nodes(), {first, count} = this.outlines, [x, y] = this.toDomain(px, py);
-    for (let cell = count - 1; cell >= 0; --cell) {
-      const [cx, cy] = this.centreOf(nodes, cell), near = (v, middle, length) => v - length * Math.round((v - middle) / length);
+    const shapes = this.shapes(), [x, y] = this.toDomain(px, py);
+    for (let cell = this.outlines.count - 1; cell >= 0; --cell) {
+      if (!shapes[cell].length) continue;
+      const [cx, cy] = this.centreOf(shapes, cell), near = (v, middle, length) => v - length * Math.round((v - middle) / length);
       const qx = this.open ? x : near(x, cx, this.lx), qy = this.walls ? y : near(y, cy, this.ly);
       let inside = false;
-      for (let i = first[cell], j = first[cell + 1] - 1; i < first[cell + 1]; j = i++) {
-        const [ax, ay, bx, by] = [nodes[2 * i], nodes[2 * i + 1], nodes[2 * j], nodes[2 * j + 1]];
+      for (const {xy} of shapes[cell]) for (let i = 0, j = xy.length - 2; i < xy.length; j = i, i += 2) {
+        const [ax, ay, bx, by] = [xy[i], xy[i + 1], xy[j], xy[j + 1]];
         if ((ay > qy) !== (by > qy) && qx < (bx - ax) * (qy - ay) / (by - ay) + ax) inside = !inside;
       }
       if (inside) return cell;
@@ -158,9 +182,9 @@ class Animation {
 
   /// Draws the instant into a context of `width` by `height` pixels: that of the canvas, or one that writes SVG.
   paint(context) {
-    const {lx, ly, width, height, view} = this, nodes = this.outlines && this.nodes(), scale = this.scale = this.whole * this.zoom;
+    const {lx, ly, width, height, view} = this, shapes = this.outlines && this.shapes(Boolean(this.colour?.tension)), scale = this.scale = this.whole * this.zoom;
     context.clearRect(0, 0, width, height);
-    const followed = view.follow && view.cell !== null && nodes && this.outlines.has(nodes, view.cell) ? this.centreOf(nodes, view.cell) : null;
+    const followed = view.follow && view.cell !== null && shapes && this.outlines.has(shapes, view.cell) ? this.centreOf(shapes, view.cell) : null;
     this.middle = followed && this.walls && this.zoom === 1 ? [followed[0], ly / 2] : followed ?? this.centre;
     const [cx, cy] = this.middle, half = [width / scale / 2, height / scale / 2];
     // One period at most, and what of it the canvas shows.
@@ -172,9 +196,10 @@ class Animation {
     const images = (low, high, length, from, to) => { const list = []; for (let k = Math.ceil((from - high) / length); k <= Math.floor((to - low) / length); ++k) list.push(k * length); return list; };
     const acrossX = (low, high) => this.open ? [0] : images(low, high, lx, clip.left, clip.right), acrossY = (low, high) => this.walls ? [0] : images(low, high, ly, clip.bottom, clip.top);
     const flow = this.fields?.between(this.between) ?? null, under = this.paintField(context, flow, scale, acrossX, acrossY);
-    if (flow && view.tracers && this.fields.moves) this.paintTracers(context, flow, scale, acrossX);
-    if (this.data.walls) this.paintSolid(context, scale, acrossX, acrossY);
-    if (nodes) this.paintCells(context, nodes, scale, under, acrossX, acrossY);
+    if (flow && view.tracers && this.fields.moves && this.hasFlow) this.paintTracers(context, flow, scale, acrossX);
+    if (this.data.walls && (!this.section || this.section.isMiddle)) this.paintSolid(context, scale, acrossX, acrossY);
+    else if (this.data.walls) this.paintWallLines(context, scale, acrossX, acrossY);
+    if (shapes) this.paintCells(context, shapes, scale, under, acrossX, acrossY);
     if (this.failed()) this.paintFailure(context, scale, acrossX);
     context.restore();
     this.paintFrame(context, scale, clip);
@@ -186,6 +211,7 @@ class Animation {
     this.bar.replaceChildren();
     const quantity = this.fields?.quantity(this.view.field);
     if (!quantity) return false;
+    if (!this.hasFlow) { this.bar.replaceChildren(note(`The flow was kept at z = ${format(this.fields.fields.z_um, 3)} µm.`)); return false; }
     if (!flow) { this.bar.replaceChildren(...colourBar(quantity, "none written yet")); return false; }
     const {outputs, box_um: [x, y, w, h]} = this.fields.fields, strain = this.timeline.over !== "time_s" && grows(this.data);
     const name = i => strain && this.stageAt(outputs[i]).over === "strain" ? `strain ${format(this.data.strain[outputs[i]], 3)}` : `${format(this.data.time_s[outputs[i]], 4)} s`;
@@ -201,6 +227,8 @@ class Animation {
     return true;
   }
 
+  /// Whether the flow of the page is that of the section.
+  get hasFlow() { const z = this.fields?.fields.z_um; return !this.section || z === undefined || Math.abs(z - this.section.z) < .03 * this.section.length; }
   paintTracers(context, flow, scale, acrossX) {
     const {data, timeline} = this, output = timeline.output(this.run), stage = this.stageAt(output), life = Math.max(6, timeline.count / 14);
     const from = Math.max(0, stage.from - 1), each = (data.time_s[stage.to] - data.time_s[from]) / Math.max(1, stage.to - from);  // s for each output
@@ -209,32 +237,32 @@ class Animation {
       number: Math.min(300, Math.round(this.width * this.height / 2200))});
   }
 
-  paintCells(context, nodes, scale, under, acrossX, acrossY) {
-    const {outlines, colours, view, between} = this, {first} = outlines, colour = colours[view.colour] ?? colours.grey, tensions = colour.tension && outlines.tension(between);
-    for (let cell = 0; cell < outlines.count; ++cell) {
-      if (!outlines.has(nodes, cell)) continue;
+  get colour() { return this.colours[this.view.colour] ?? this.colours.grey; }
+  paintCells(context, shapes, scale, under, acrossX, acrossY) {
+    const {colour, view, between} = this;
+    shapes.forEach((lines, cell) => { for (const {xy, tension: tensions} of lines) {
       let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
-      for (let i = first[cell]; i < first[cell + 1]; ++i) { left = Math.min(left, nodes[2 * i]); right = Math.max(right, nodes[2 * i]); low = Math.min(low, nodes[2 * i + 1]); high = Math.max(high, nodes[2 * i + 1]); }
+      for (let i = 0; i < xy.length; i += 2) { left = Math.min(left, xy[i]); right = Math.max(right, xy[i]); low = Math.min(low, xy[i + 1]); high = Math.max(high, xy[i + 1]); }
       const tone = colour.colour ? colour.colour(cell, between) : css(colour.tone(cell, between)), bad = this.failed() && this.data.summary.failure.cell === cellNumber(this.data, cell), chosen = view.cell === cell;
       for (const dx of acrossX(left, right)) for (const dy of acrossY(low, high)) {
         context.beginPath();
-        for (let i = first[cell]; i < first[cell + 1]; ++i) context.lineTo((nodes[2 * i] + dx) * scale, (nodes[2 * i + 1] + dy) * scale);
+        for (let i = 0; i < xy.length; i += 2) context.lineTo((xy[i] + dx) * scale, (xy[i + 1] + dy) * scale);
         context.closePath();
         context.globalAlpha = colour.colour ? .75 : under ? .5 : .3; context.fillStyle = tone; context.fill();
         context.globalAlpha = 1;
         if (under || chosen) { context.strokeStyle = css(chosen ? "--text" : "--card"); context.lineWidth = chosen ? 5 : 4; context.stroke(); }
-        if (tensions && !bad) {
+        if (colour.tension && tensions && !bad) {
           context.lineWidth = 3.2; context.lineCap = "round";
-          for (let i = first[cell]; i < first[cell + 1]; ++i) {
-            const next = i + 1 < first[cell + 1] ? i + 1 : first[cell];
+          for (let i = 0; i < tensions.length; ++i) {
+            const next = (i + 1) % tensions.length;
             context.strokeStyle = colour.tension(tensions[i]);
-            context.beginPath(); context.moveTo((nodes[2 * i] + dx) * scale, (nodes[2 * i + 1] + dy) * scale); context.lineTo((nodes[2 * next] + dx) * scale, (nodes[2 * next + 1] + dy) * scale); context.stroke();
+            context.beginPath(); context.moveTo((xy[2 * i] + dx) * scale, (xy[2 * i + 1] + dy) * scale); context.lineTo((xy[2 * next] + dx) * scale, (xy[2 * next + 1] + dy) * scale); context.stroke();
           }
           continue;
         }
         context.strokeStyle = bad ? css("--bad") : tone; context.lineWidth = bad ? 3 : 2; context.stroke();
       }
-    }
+    } });
   }
 
   /// Whether a diverged run shows its last output, so that the place where it went bad is marked.
@@ -268,6 +296,16 @@ class Animation {
     }
   }
 
+  /// Of another plane than the one that the run kept, lines alone.
+  paintWallLines(context, scale, acrossX, acrossY) {
+    context.strokeStyle = css("--text"); context.lineWidth = 2; context.lineCap = "round";
+    for (const {xy} of this.section.wallLines()) for (const dx of acrossX(0, this.lx)) for (const dy of acrossY(0, this.ly)) {
+      context.beginPath();
+      for (let i = 0; i < xy.length; i += 2) context.lineTo((xy[i] + dx) * scale, (xy[i + 1] + dy) * scale);
+      context.stroke();
+    }
+  }
+
   /// Walls as thick lines, with arrows that go with them where they move; periodic borders as dashes.
   paintFrame(context, scale, clip) {
     const {lx, ly, walls} = this;
@@ -280,27 +318,12 @@ class Animation {
     for (let k = Math.ceil(clip.bottom / ly - 1e-9); k * ly <= clip.top + 1e-9 * ly; ++k) edge(walls, clip.left, k * ly, clip.right, k * ly);
     if (walls) this.paintWalls(context, scale, clip);
   }
-  /// Speeds of the lower and the upper wall in um/s: from the fields where there are some, else of walls that move against
-  /// each other.
-  wallSpeeds() {
-    const rate = this.data.shear_rate?.[this.timeline.output(this.run)] ?? null, flow = this.fields?.moves ? this.fields.between(this.between) : null;
-    if (rate === null) return [0, 0];
-    const middle = flow && this.data.stage[this.fields.fields.outputs[flow.a]] === this.data.stage[this.timeline.output(this.run)] ? this.meanOfWalls(flow) : 0;
-    return [middle - rate * this.ly / 2, middle + rate * this.ly / 2];
-  }
-  meanOfWalls(flow) {
-    const velocity = this.fields.velocity(flow), few = 16, mean = y => Array.from({length: few}, (_, i) => velocity((i + .5) / few * this.lx, y)?.[0] ?? 0).reduce((a, b) => a + b) / few;
-    const speed = (mean(this.ly * .001) + mean(this.ly * .999)) / 2, rate = Math.abs(this.data.shear_rate[this.timeline.output(this.run)]) * this.ly;
-    return Math.abs(speed) > .05 * rate ? speed : 0;
-  }
   paintWalls(context, scale, clip) {
-    const {a, b, share} = this.between, time = this.data.time_s[a] + share * (this.data.time_s[b] - this.data.time_s[a]), strain = (this.data.strain[a] ?? 0) + share * ((this.data.strain[b] ?? 0) - (this.data.strain[a] ?? 0));
     const apart = 64 / scale, size = 7;
     context.fillStyle = css("--text");
-    this.wallSpeeds().forEach((speed, i) => {
+    wallMotion(this).forEach(({speed, gone}, i) => {
       if (!speed) return;
-      const sign = Math.sign(speed), up = i ? 1 : -1, y = (i ? this.ly : 0) * scale + up * 11, rate = this.data.shear_rate[this.timeline.output(this.run)];
-      const gone = Math.abs(Math.abs(speed) - Math.abs(rate) * this.ly / 2) < 1e-6 * Math.abs(speed) ? up * Math.sign(rate) * strain * this.ly / 2 : speed * time;
+      const sign = Math.sign(speed), y = (i ? this.ly : 0) * scale + (i ? 1 : -1) * 11;
       for (let k = Math.ceil((clip.left - gone) / apart); gone + k * apart <= clip.right; ++k) {
         const x = (gone + k * apart) * scale;
         if (x < clip.left * scale + 6 || x > clip.right * scale - 6) continue;
@@ -309,7 +332,7 @@ class Animation {
     });
   }
   paintScale(context, scale) {
-    const bar = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].filter(b => b <= this.lx / this.zoom / 4).pop() || this.lx / 4, words = `${format(bar)} µm`, bottom = this.height - (this.walls ? 26 : 13);
+    const bar = barLength(this.lx / this.zoom / 4), words = `${format(bar)} µm`, bottom = this.height - (this.walls ? 26 : 13);
     const left = Math.max(14, this.width / 2 - Math.min(this.width, this.lx * scale) / 2 + 8);
     context.font = "12px system-ui, sans-serif";
     context.fillStyle = css("--card"); context.globalAlpha = 0.8;
@@ -324,7 +347,7 @@ class Animation {
 /// What the mark in a diverged run's animation means.
 function failureNote(run) {
   const failure = (run.summary || {}).failure;
-  if (!failure?.place_m || !run.step.length || !(run.outlines || run.fields)) return [];
+  if (!failure?.place_m || failure.place_m.length > 2 || !run.step.length || !isDrawn(run)) return [];
   const last = run.step.at(-1), cell = run.outlines && typeof failure.cell === "number" ? ", the red outline the cell" : "";
   return [note(`At the last instant the red ring marks the place where the run diverged${cell}` + (last < failure.step ? `: at step ${format(failure.step)}, while what is drawn is of step ${format(last)}, the last written.` : "."))];
 }

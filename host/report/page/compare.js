@@ -45,17 +45,21 @@ function telling(timeline) {
 }
 
 function showAllResults(timeline, data) {
-  const {runs} = data, views = element("div", {class: "pair"}), view = new View(runs), animations = [];
+  const {runs} = data, views = element("div", {class: "pair"}), view = new View(runs), animations = [], spaces = [];
   section(runs.some(run => run.cells) ? "Cells" : "Flow", views);
   runs.forEach((run, r) => {
     const box = element("div", {class: "card"}, runName(r, data));
     views.append(box);
-    if (run.outlines || run.fields) animations.push(new Animation(box, timeline, r, view));
-    else if (!run.shown.note) box.append(note("No animation: there are no cells."));
+    if (isDrawn(run)) {
+      const {space, animation, parts} = drawnRun(box, timeline, r, view);
+      animations.push(animation);
+      if (space) spaces.push(space);
+      box.append(...parts.flatMap(part => [...part.children]).slice(0, 1));
+    } else if (!run.shown.note) box.append(note("No animation: there are no cells."));
     box.append(...whyNoAnimation(run), instantLine(timeline, r), ...failureNote(run));
   });
   const alike = note("");
-  page.append(element("div", {class: "card", style: "margin-top:14px"}, ...animationControls(timeline, animations, view)), alike);
+  page.append(element("div", {class: "card", style: "margin-top:14px"}, ...animationControls(timeline, animations, view, [], spaces)), alike);
   timeline.listeners.push(() => {
     alike.textContent = timeline.over === "strain" ? "All show the same strain and, where it stands still, the same time since they came to rest: the nearest output of each."
       : "All show the same time: the nearest output of each.";

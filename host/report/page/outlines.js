@@ -43,6 +43,9 @@ function fillLines(run) {
 }
 /// The number that a cell of a page has in the scene.
 const cellNumber = (run, cell) => run.cells?.ids?.[cell] ?? cell;
+/// Whether there is something to be drawn in the plane, or in space.
+const isInSpace = run => run.domain?.size_um.length === 3;
+const isDrawn = run => Boolean(run.outlines || run.fields || run.surfaces || run.walls);
 /// Whether cells come or leave.
 const hasTraffic = run => Boolean(run.cells?.from);
 
@@ -57,8 +60,13 @@ class Outlines {
   between({a, b, share}) {
     return share ? mixed(this.at(a), this.at(b), share) : this.at(a);
   }
-  /// Whether a cell is among these nodes.
-  has(nodes, cell) { return !Number.isNaN(nodes[2 * this.first[cell]]); }
+  /// For each cell its lines, [{xy, tension}]: one, or none where it is not there.
+  shapes(instant, withTension) {
+    const nodes = this.between(instant), tension = withTension ? this.tension(instant) : null, {first} = this;
+    return Array.from({length: this.count}, (_, cell) => Number.isNaN(nodes[2 * first[cell]]) ? []
+      : [{xy: nodes.subarray(2 * first[cell], 2 * first[cell + 1]), tension: tension?.subarray(first[cell], first[cell + 1])}]);
+  }
+  has(shapes, cell) { return shapes[cell].length > 0; }
   /// Tension over its scale, from -1 to 1, for each node; null where there is none.
   tension({a, b, share}) {
     return this.data.tension?.scale_N_per_m ? decodedTension(this, a, b, share) : null;
@@ -97,7 +105,9 @@ const percentile = (values, share) => { const sorted = values.filter(v => v !== 
 /// What colours the cells of one run can have: name -> {title, tone (a style's name) or colour of a cell, bar}.
 function cellColours(run) {
   const {cells} = run, colours = {}, tonesOf = cells && aggregateTones(cells.aggregate);
-  if (!run.outlines) return colours;
+  if (!run.outlines && !run.surfaces) return colours;
+  // In space one cell hides another: they look as they do under a microscope until something else is asked for.
+  if (run.surfaces) colours.blood = {title: "red", tone: () => "--blood", bar: () => []};
   if (cells && cells.types.length > 1) {
     colours.cell = {title: "cell", tone: cell => lineTones[cellNumber(run, cell) % lineTones.length], bar: () => []};
   }
@@ -117,7 +127,7 @@ function cellColours(run) {
     if (deformation.some(v => v !== null)) colours.deformation = ranged("deformation", "deformation", "", percentile(deformation, .01), percentile(deformation, .99));
     if (speeds.some(v => v !== null)) colours.speed = ranged("speed_um_per_s", "speed of the cell", ", µm/s", 0, percentile(speeds, .99));
   }
-  const scale = run.outlines.tension?.scale_N_per_m || run.surfaces?.tension?.scale_N_per_m;
+  const scale = run.outlines?.tension?.scale_N_per_m || run.surfaces?.tension?.scale_N_per_m;
   if (scale) colours.tension = {title: "membrane tension", tension: share => rampColour(rampStops.tension, (share + 1) / 2), tone: () => "--single",
     bar: () => rampBar("Membrane tension, µN/m", rampStops.tension, [`≤ ${format(-scale * 1e6, 3)}`, "0", `≥ ${format(scale * 1e6, 3)}`])};
   colours.grey = {title: "grey", tone: () => "--single", bar: () => []};

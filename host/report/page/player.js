@@ -7,7 +7,7 @@ const choice = (label, choices, now, change) => {
 const button = (text, onclick, more = {}) => element("button", {type: "button", onclick, ...more}, text);
 
 /// Play, scrub and speed, what lies under the cells and how these are coloured, for all animations of the page.
-function animationControls(timeline, animations, view, strip = []) {
+function animationControls(timeline, animations, view, strip = [], spaces = []) {
   const slider = element("input", {type: "range", min: 0, max: Math.max(0, timeline.count - 1), value: 0, "aria-label": "Instant", oninput: () => { timeline.stop(); timeline.seek(Number(slider.value)); }});
   const speedBox = choice("Speed", [["0.25", "¼×"], ["0.5", "½×"], ["1", "1×"], ["2", "2×"], ["4", "4×"]], "1", () => {}), speed = speedBox.querySelector("select");
   const toggle = () => timeline.playing ? timeline.stop() : timeline.play(() => Number(speed.value)), play = button("Play", toggle, {title: "space"});
@@ -31,7 +31,7 @@ function animationControls(timeline, animations, view, strip = []) {
     box.checked = view.tracers;
     second.append(element("label", {}, box, "Tracers"));
   }
-  const each = act => () => { for (const animation of animations) act(animation); };
+  const each = act => () => { for (const one of spaces.length ? spaces.slice(0, 1) : animations) act(one); };
   second.append(element("span", {class: "group"}, button("−", each(a => a.zoomBy(1 / 1.5)), {"aria-label": "zoom out"}), button("+", each(a => a.zoomBy(1.5)), {"aria-label": "zoom in"}), button("Fit", each(a => a.showAll()))));
   if (animations.some(a => a.outlines)) second.append(followControl(animations, view));
   second.append(saveMenu("Save", [["Picture, PNG", () => savePicture(animations)], ["Picture, SVG", () => saveSvg(animations)], ["Video", event => saveVideo(timeline, animations[0], event.currentTarget)]]),

@@ -17,7 +17,7 @@ function howToGoOn({checkpoint_step: step}) {
 }
 function notesOf(run) {
   const notes = [];
-  if (run.outlines || run.fields) notes.push("Between two outputs the animation is interpolated.");
+  if (isDrawn(run)) notes.push("Between two outputs the animation is interpolated.");
   if (run.shown.outputs < run.shown.of) notes.push(`${run.shown.outputs} of ${run.shown.of} outputs are shown here; the files have all.`);
   if (run.outlines && run.shown.node_stride > 1) notes.push(`Outlines are drawn through one in ${run.shown.node_stride} of their nodes.`);
   if (run.fields) notes.push("The flow is shown as means over blocks of the lattice" + (run.fields.derived ? ", the vorticity computed from the velocity that was written." : "."));
@@ -44,7 +44,7 @@ function showRun(run) {
 function begin(timeline, run, summary) {
   if (followLink(timeline)) return;
   timeline.seek(tellingPosition(run, eventsOf(run)));
-  const still = matchMedia("(prefers-reduced-motion: reduce)").matches || summary.status === "diverged" || !(run.outlines || run.fields);
+  const still = matchMedia("(prefers-reduced-motion: reduce)").matches || summary.status === "diverged" || !isDrawn(run);
   if (still) return;
   const started = setTimeout(() => { if (!printing && document.visibilityState === "visible") timeline.play(); }, 900), cancel = () => clearTimeout(started);
   for (const kind of ["pointerdown", "keydown", "beforeprint"]) addEventListener(kind, cancel, {once: true});
@@ -53,18 +53,39 @@ function begin(timeline, run, summary) {
 function showResults(timeline, run) {
   const events = eventsOf(run), view = new View([run]), box = element("div", {class: "stage"});
   section(run.cells ? "Cells" : "Flow", box);
-  if (run.outlines || run.fields) {
-    const card = element("div", {class: "card"});
-    box.append(card);
-    const drawn = run.surfaces ? element("div", {class: "pair"}, element("div"), element("div")) : card;
-    if (run.surfaces) { card.append(drawn); new SpaceView(drawn.firstChild, timeline, 0, view); }
-    const animation = timeline.animation = new Animation(drawn.lastChild ?? drawn, timeline, 0, view), [first, second] = animationControls(timeline, [animation], view, [storyStrip(timeline, events)]);
+  if (isDrawn(run)) {
+    const card = element("div", {class: "card"}), {space, animation, parts} = drawnRun(card, timeline, 0, view), [first, second] = animationControls(timeline, [animation], view, [storyStrip(timeline, events)], space ? [space] : []);
+    timeline.animation = animation;
     card.append(first, instantLine(timeline, 0), second, ...failureNote(run), ...whyNoAnimation(run));
-    if (run.surfaces) card.append(note("The surfaces: drag, or two fingers, to turn; Ctrl and the wheel, or + and −, to come closer; a cut across an axis opens the cells. The outlines: every cell cut by the plane across z through its own middle."));
+    if (space) card.append(note("Drag, or two fingers, to turn; Ctrl and the wheel, or + and −, to come closer; a cut across an axis opens all that lies before it."));
+    box.append(card, ...parts);
   } else if (run.shown.note) box.append(element("div", {class: "card"}, ...whyNoAnimation(run)));
   section("Charts", axisControls(timeline), note("Point at a chart to go to that instant, drag across it to look closer, click a name to hide its line, a tick above to go to an event."));
   const notes = plots(timeline, page, {view, events});
   page.append(element("div", {class: "notes"}, ...[...notesOf(run), ...notes].map(note)));
+}
+
+/// Draws a run into `card`, {space, animation, parts}: in space its box there and, as parts for elsewhere, a section and the flow across x.
+function drawnRun(card, timeline, r, view) {
+  const run = timeline.runs[r];
+  if (!isInSpace(run)) return {space: null, animation: new Animation(card, timeline, r, view), parts: []};
+  const surfaces = new Surfaces(run.surfaces ?? noSurfaces), section = new Section(run, surfaces), box = element("div", {class: "card"}), parts = [box];
+  const space = new SpaceView(card, timeline, r, view, surfaces), name = run.walls || run.fields ? "Section and flow" : "Section";
+  box.append(element("div", {class: "chart-head"}, element("h3", {}, name)));
+  const animation = new Animation(box, timeline, r, view, section);
+  box.append(sectionControls(section, animation));
+  if (run.fields?.across) { const flow = element("div", {class: "card"}); new FlowAcross(flow, timeline, r); parts.push(flow); }
+  return {space: space.renderer ? space : null, animation, parts: [element("div", {class: parts.length > 1 ? "pair" : ""}, ...parts)]};
+}
+/// Where the section lies.
+function sectionControls(section, animation) {
+  const words = () => `z = ${format(section.z, 3)} µm`, where = element("span", {class: "quiet"}, words());
+  const slider = element("input", {type: "range", min: 0, max: 1, step: .005, value: .5, "aria-label": "Place of the section", "aria-valuetext": words(), oninput: () => {
+    section.z = Number(slider.value) * section.length;
+    where.textContent = words(); slider.setAttribute("aria-valuetext", words());
+    animation.draw();
+  }});
+  return element("div", {class: "controls"}, element("label", {}, "Plane across z"), slider, where);
 }
 
 /// All that is in tables, in four tabs.

@@ -1,62 +1,4 @@
-// ------------------------------------------------------------------------------------------------ cells in three dimensions
-/// Surfaces of one run: nodes x, y, z in micrometres, not wrapped into the box, at an output that has them or between two.
-class Surfaces {
-  constructor(surfaces) {
-    Object.assign(this, {data: surfaces, first: surfaces.first, count: surfaces.first.length - 1, nodes: surfaces.first.at(-1), known: []});
-    const meshes = surfaces.meshes.map(decodedTriangles), length = surfaces.mesh.reduce((sum, mesh) => sum + meshes[mesh].length, 0);
-    this.triangles = new Uint32Array(length);
-    let end = 0;
-    surfaces.mesh.forEach((mesh, cell) => { for (const node of meshes[mesh]) this.triangles[end++] = surfaces.first[cell] + node; });
-  }
-  at(kept) {
-    return this.known[kept] ??= decodedNodes(this, kept, 3);
-  }
-  /// The two that have surfaces around a place among the page's outputs, {a, b, share}.
-  around({a, share}) {
-    const {outputs} = this.data, position = a + share, after = outputs.findIndex(output => output >= position);
-    if (after <= 0) { const only = after < 0 ? outputs.length - 1 : 0; return {a: only, b: only, share: 0}; }
-    return {a: after - 1, b: after, share: (position - outputs[after - 1]) / (outputs[after] - outputs[after - 1])};
-  }
-  between(instant) {
-    const {a, b, share} = this.around(instant);
-    return share ? mixed(this.at(a), this.at(b), share) : this.at(a);
-  }
-  /// Tension over its scale, from -1 to 1, for each node.
-  tension(instant) {
-    const {a, b, share} = this.around(instant);
-    return decodedTension(this, a, b, share);
-  }
-  /// Moved as whole cells into the periodic box. Triangles of cells that are not there have no area.
-  wrapped(places, box, periodic) {
-    const moved = places.map(v => Number.isNaN(v) ? 0 : v), {first} = this;
-    for (let cell = 0; cell < this.count; ++cell) {
-      for (let k = 0; k < 3; ++k) {
-        if (!periodic[k]) continue;
-        let sum = 0;
-        for (let i = first[cell]; i < first[cell + 1]; ++i) sum += moved[3 * i + k];
-        const shift = box[k] * Math.floor(sum / (first[cell + 1] - first[cell]) / box[k]);
-        if (shift) for (let i = first[cell]; i < first[cell + 1]; ++i) moved[3 * i + k] -= shift;
-      }
-    }
-    return moved;
-  }
-}
-
-function decodedTriangles(text) {
-  const numbers = new DataView(bytesOf(text).buffer);
-  return Uint32Array.from({length: numbers.byteLength / 4}, (_, i) => numbers.getUint32(4 * i, true));
-}
-/// Outer normals at the nodes of triangles, by the areas around them.
-function normalsAt(places, triangles) {
-  const normals = new Float32Array(places.length);
-  for (let t = 0; t < triangles.length; t += 3) {
-    const [a, b, c] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]], u = [0, 1, 2].map(k => places[b + k] - places[a + k]), v = [0, 1, 2].map(k => places[c + k] - places[a + k]);
-    const cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-    for (const at of [a, b, c]) for (let k = 0; k < 3; ++k) normals[at + k] += cross[k];
-  }
-  return normals;
-}
-
+// ------------------------------------------------------------------------------------------------------- the box in space
 const rgbOf = (() => {
   const context = document.createElement("canvas").getContext("2d", {willReadFrequently: true}), known = new Map();
   return text => {
@@ -68,69 +10,141 @@ const rgbOf = (() => {
   };
 })();
 
-/// The surfaces of a run at the timeline's instant, in their box. Drag, two fingers or arrow keys turn it; Ctrl and the wheel, fingers that
-/// part, + and - come closer, 0 is where it began. A wheel or a finger alone belongs to the page. A plane across one axis cuts them open: what lies between it and the eye is left out.
+/// A flat arrow as three triangles from `tail` along `along` (a vector as long as the arrow), its breadth along `across` (of length 1).
+function arrowTriangles(tail, along, across) {
+  const length = Math.hypot(...along), at = (share, side) => tail.map((t, k) => t + share * along[k] + side * length * across[k]);
+  const [a, b, c, d] = [at(0, .035), at(0, -.035), at(.62, -.035), at(.62, .035)];
+  return [a, b, c, a, c, d, at(.62, .13), at(.62, -.13), at(1, 0)].flat();
+}
+
+/// A run in its box at the timeline's instant: surfaces of cells, walls, the arrows of what moves. Drag, two fingers or arrow keys turn it;
+/// Ctrl and the wheel, fingers that part, + and - come closer, 0 is where it began. A wheel or a finger alone belongs to the page. A plane
+/// across one axis cuts all open: what lies between it and the eye is left out, and the cells are filled where they are cut.
 class SpaceView {
-  static start = {azimuth: -.5, elevation: .35, distance: .85};
-  static uncut = [0, 0, 0, 1];
-  constructor(parent, timeline, run, view) {
-    const data = timeline.runs[run], surfaces = new Surfaces(data.surfaces);
-    const places = new Map((data.cells?.ids ?? []).map((number, place) => [number, place]));
-    this.places = data.surfaces.cells.map((number, cell) => places.get(number) ?? cell);  // among the cells of the page
-    Object.assign(this, {timeline, run, data, view, surfaces, colours: cellColours(data), box: data.surfaces.size_um, periodic: data.surfaces.periodic, cut: {axis: null, share: .5}, ...SpaceView.start});
-    this.canvas = element("canvas", {class: "view space", role: "img", tabindex: 0, "aria-label": `${surfaces.count} ${surfaces.count === 1 ? "cell" : "cells"} in a box of ${this.box.map(l => format(l, 3)).join(" by ")} µm, seen in perspective. Arrow keys turn it, plus and minus zoom.`});
-    parent.append(this.canvas, this.cutControls());
+  static start = {azimuth: -.5, elevation: .3, closer: 1};
+  static uncut = [0, 0, 0, 1e6];
+  static opening = Math.tan(16 * Math.PI / 180);
+  static arrows = 14;
+  constructor(parent, timeline, run, view, surfaces) {
+    const data = timeline.runs[run], {domain} = data;
+    Object.assign(this, {timeline, run, data, view, surfaces, places: surfaces.placesOf(data), colours: cellColours(data), fields: data.fields && new Fields(data), box: domain.size_um, ly: domain.size_um[1], stages: stagesOf(data),
+      periodic: [domain.periodic_x, domain.periodic_y, domain.periodic_z], cut: {axis: null, share: .5}});
+    view.camera ??= {...SpaceView.start};
+    this.canvas = element("canvas", {class: "view space", role: "img", tabindex: 0, "aria-label": `${this.words()} in a box of ${this.box.map(l => format(l, 3)).join(" by ")} µm, seen in perspective. Arrow keys turn it, plus and minus zoom.`});
+    this.over = element("canvas", {class: "over", "aria-hidden": "true"});
+    this.bar = element("div", {class: "bar cells"});
+    parent.append(element("div", {class: "view-box"}, this.canvas, this.over), this.cutControls(), this.bar);
     try { this.begin(); } catch { parent.replaceChildren(note("This browser has no WebGL: the surfaces are in frames.xmf, for ParaView.")); return; }
     timeline.listeners.push(() => this.draw());
-    view.listeners.push(() => this.draw());
+    view.listeners.push(() => { this.showBar(); this.draw(); });
+    view.turned.push(() => this.draw());
     redraws.push(() => this.draw());
     new ResizeObserver(() => { if (this.canvas.clientWidth !== this.width) this.draw(); }).observe(this.canvas);
     this.listen();
+    this.showBar();
   }
+  words() { const {count} = this.surfaces; return count ? `${count} ${count === 1 ? "cell" : "cells"}` : "The walls"; }
+  showBar() { this.bar.replaceChildren(...(this.surfaces.count ? (this.colours[this.view.colour] ?? this.colours.grey)?.bar() ?? [] : [])); }
+  get between() { return this.timeline.between(this.run); }
+  stageAt(output) { return this.stages.findLast(stage => stage.from <= output); }
   begin() {
-    const {Renderer, Camera, Transform, Program, Mesh, Geometry} = ogl, nodes = this.surfaces.nodes, [x, y, z] = this.box.map(l => l / 2);
+    const {Renderer, Camera, Transform, Program, Mesh, Geometry} = ogl, nodes = this.surfaces.nodes;
     this.renderer = new Renderer({canvas: this.canvas, dpr: Math.min(2, window.devicePixelRatio || 1), alpha: true, antialias: true, premultipliedAlpha: true, preserveDrawingBuffer: true});
     const {gl} = this.renderer;
     if (!gl) throw new Error("no WebGL");
     gl.clearColor(0, 0, 0, 0);
     this.camera = new Camera(gl, {fov: 32, near: .01, far: 100});
     this.scene = new Transform();
-    this.geometry = new Geometry(gl, {position: {size: 3, data: new Float32Array(3 * nodes), usage: gl.DYNAMIC_DRAW}, normal: {size: 3, data: new Float32Array(3 * nodes), usage: gl.DYNAMIC_DRAW},
-      colour: {size: 3, data: new Float32Array(3 * nodes), usage: gl.DYNAMIC_DRAW}, index: {data: this.surfaces.triangles}});
-    this.program = new Program(gl, {cullFace: false, uniforms: {plane: {value: SpaceView.uncut}},
+    this.plane = {value: SpaceView.uncut};
+    const dynamic = (size, count) => ({size, data: new Float32Array(size * count), usage: gl.DYNAMIC_DRAW}), add = (geometry, program, mode = gl.TRIANGLES) => new Mesh(gl, {mode, geometry, program, frustumCulled: false}).setParent(this.scene);
+    this.geometry = new Geometry(gl, {position: dynamic(3, nodes), normal: dynamic(3, nodes), colour: dynamic(3, nodes), index: {data: this.surfaces.triangles}});
+    // An inner side that is seen lies behind the cut: in one flat colour it is the filled cut itself.
+    this.program = new Program(gl, {cullFace: false, uniforms: {plane: this.plane, fill: {value: [1, 1, 1, 0]}},
       vertex: `attribute vec3 position, normal, colour; uniform mat4 modelViewMatrix, projectionMatrix; uniform mat3 normalMatrix; varying vec3 p, n, c;
         void main() { p = position; n = normalMatrix * normal; c = colour; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
-      fragment: `precision highp float; uniform vec4 plane; varying vec3 p, n, c;
+      fragment: `precision highp float; uniform vec4 plane, fill; varying vec3 p, n, c;
         void main() { if (dot(plane.xyz, p) > plane.w) discard;
-          float light = 0.45 + 0.6 * abs(dot(normalize(n), normalize(vec3(0.3, 0.5, 0.8)))); gl_FragColor = vec4(c * light * (gl_FrontFacing ? 1.0 : 0.55), 1.0); }`});
-    new Mesh(gl, {geometry: this.geometry, program: this.program, frustumCulled: false}).setParent(this.scene);
-    if (this.data.walls?.surface) this.addWalls(this.data.walls.surface);
-    const corners = Array.from({length: 8}, (_, i) => [i & 1 ? x : -x, i & 2 ? y : -y, i & 4 ? z : -z]), edges = [];
-    for (let i = 0; i < 8; ++i) for (const bit of [1, 2, 4]) if (!(i & bit)) edges.push(...corners[i], ...corners[i | bit]);
-    this.frameProgram = new Program(gl, {uniforms: {tone: {value: [0, 0, 0]}}, vertex: "attribute vec3 position; uniform mat4 modelViewMatrix, projectionMatrix; void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
-      fragment: "precision highp float; uniform vec3 tone; void main() { gl_FragColor = vec4(tone, 1.0); }"});
-    this.rim = new Geometry(gl, {position: {size: 3, data: new Float32Array(12), usage: gl.DYNAMIC_DRAW}});
-    new Mesh(gl, {mode: gl.LINE_LOOP, geometry: this.rim, program: this.frameProgram, frustumCulled: false}).setParent(this.scene);
-    new Mesh(gl, {mode: gl.LINES, geometry: new Geometry(gl, {position: {size: 3, data: new Float32Array(edges)}}), program: this.frameProgram, frustumCulled: false}).setParent(this.scene);
+          vec3 m = normalize(n); float light = 0.42 + 0.5 * max(0.0, dot(m, normalize(vec3(0.3, 0.6, 0.75)))) + 0.14 * abs(m.z), shine = 0.18 * pow(max(0.0, dot(m, normalize(vec3(0.15, 0.4, 0.9)))), 24.0);
+          gl_FragColor = vec4(gl_FrontFacing ? c * light + shine : mix(c, fill.rgb, fill.a), 1.0); }`});
+    if (this.surfaces.count) add(this.geometry, this.program);
+    const flat = () => new Program(gl, {cullFace: false, uniforms: {plane: this.plane, tone: {value: [0, 0, 0]}}, vertex: "attribute vec3 position; uniform mat4 modelViewMatrix, projectionMatrix; varying vec3 p; void main() { p = position; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
+      fragment: "precision highp float; uniform vec4 plane; uniform vec3 tone; varying vec3 p; void main() { if (dot(plane.xyz, p) > plane.w) discard; gl_FragColor = vec4(tone, 1.0); }"});
+    this.frameProgram = flat(); this.arrowProgram = flat();
+    this.frameProgram.uniforms.plane = {value: SpaceView.uncut};
+    this.rim = new Geometry(gl, {position: dynamic(3, 4)});
+    this.arrowGeometry = new Geometry(gl, {position: dynamic(3, 9 * SpaceView.arrows)});
+    add(this.rim, this.frameProgram, gl.LINE_LOOP);
+    add(new Geometry(gl, {position: {size: 3, data: this.edges()}}), this.frameProgram, gl.LINES);
+    this.glassPrograms = [];
+    this.addPlanes(); if (this.data.walls?.surface) this.addWalls(this.data.walls.surface);
+    add(this.arrowGeometry, this.arrowProgram);
   }
-  /// Walls that are no planes: glass, denser where it is seen from the side.
-  addWalls({quantum_um: quantum, points, triangles}) {
-    const {Program, Mesh, Geometry} = ogl, {gl} = this.renderer, places = new DataView(bytesOf(points).buffer), index = decodedTriangles(triangles);
-    const position = Float32Array.from({length: places.byteLength / 2}, (_, i) => places.getInt16(2 * i, true) * quantum - this.box[i % 3] / 2);
-    this.wallProgram = new Program(gl, {cullFace: false, transparent: true, depthWrite: false, uniforms: {plane: this.program.uniforms.plane, tone: {value: [0, 0, 0]}},
+  get corners() { return Array.from({length: 8}, (_, i) => [0, 1, 2].map(k => (i >> k & 1 ? 1 : -1) * this.box[k] / 2)); }
+  edges() {
+    const {corners} = this, edges = [];
+    for (let i = 0; i < 8; ++i) for (const bit of [1, 2, 4]) if (!(i & bit)) edges.push(...corners[i], ...corners[i | bit]);
+    return Float32Array.from(edges);
+  }
+  /// Glass that is `thin` seen from the front and dense from the side.
+  glass(position, normal, index, thin, dense) {
+    const {Program, Mesh, Geometry} = ogl, {gl} = this.renderer;
+    const program = new Program(gl, {cullFace: false, transparent: true, depthWrite: false, uniforms: {plane: this.plane, tone: {value: [0, 0, 0]}, seen: {value: [thin, dense]}},
       vertex: `attribute vec3 position, normal; uniform mat4 modelViewMatrix, projectionMatrix; uniform mat3 normalMatrix; varying vec3 p, n, e;
         void main() { vec4 seen = modelViewMatrix * vec4(position, 1.0); p = position; n = normalMatrix * normal; e = seen.xyz; gl_Position = projectionMatrix * seen; }`,
-      fragment: `precision highp float; uniform vec4 plane; uniform vec3 tone; varying vec3 p, n, e;
+      fragment: `precision highp float; uniform vec4 plane; uniform vec3 tone; uniform vec2 seen; varying vec3 p, n, e;
         void main() { if (dot(plane.xyz, p) > plane.w) discard;
-          float along = abs(dot(normalize(n), normalize(e))), dense = 0.13 + 0.45 * pow(1.0 - along, 2.0); gl_FragColor = vec4(tone * dense, dense); }`});
-    this.wallProgram.setBlendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    new Mesh(gl, {geometry: new Geometry(gl, {position: {size: 3, data: position}, normal: {size: 3, data: normalsAt(position, index)}, index: {data: index}}), program: this.wallProgram, frustumCulled: false}).setParent(this.scene);
+          float along = abs(dot(normalize(n), normalize(e))), dense = seen.x + seen.y * pow(1.0 - along, 2.0); gl_FragColor = vec4(tone * dense, dense); }`});
+    program.setBlendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    this.glassPrograms.push(program);
+    new Mesh(gl, {geometry: new Geometry(gl, {position: {size: 3, data: position}, normal: {size: 3, data: normal}, index: {data: index}}), program, frustumCulled: false}).setParent(this.scene);
+  }
+  /// Walls that are planes: the sides of the box across y and z that are not periodic. Across x those are openings.
+  addPlanes() {
+    const half = this.box.map(l => l / 2), position = [], normal = [], index = [];
+    for (const axis of [1, 2]) if (!this.periodic[axis]) for (const side of [-1, 1]) {
+      const [u, v] = [0, 1, 2].filter(k => k !== axis), first = position.length / 3;
+      for (const [a, b] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) { const p = [0, 0, 0], n = [0, 0, 0]; p[axis] = side * half[axis]; p[u] = a * half[u]; p[v] = b * half[v]; n[axis] = side; position.push(...p); normal.push(...n); }
+      index.push(...[0, 1, 2, 0, 2, 3].map(i => first + i));
+    }
+    if (index.length) this.glass(Float32Array.from(position), Float32Array.from(normal), Uint16Array.from(index), .2, .12);
+  }
+  /// Walls that are no planes.
+  addWalls({quantum_um: quantum, points, triangles}) {
+    const places = new DataView(bytesOf(points).buffer), index = decodedTriangles(triangles);
+    const position = Float32Array.from({length: places.byteLength / 2}, (_, i) => places.getInt16(2 * i, true) * quantum - this.box[i % 3] / 2);
+    this.glass(position, normalsAt(position, index), index, .13, .45);
+  }
+  /// Directions of the screen in the box: to the right, upwards and towards the eye.
+  get directions() {
+    const {azimuth: a, elevation: e} = this.view.camera;
+    return [[Math.cos(a), 0, -Math.sin(a)], [-Math.sin(e) * Math.sin(a), Math.cos(e), -Math.sin(e) * Math.cos(a)], [Math.cos(e) * Math.sin(a), Math.sin(e), Math.cos(e) * Math.cos(a)]];
+  }
+  /// How far the eye must be to see all of the box.
+  distance(aspect) {
+    const [right, up, near] = this.directions, along = (v, c) => v.reduce((sum, x, k) => sum + x * c[k], 0), edge = .92 * SpaceView.opening;
+    return Math.max(...this.corners.map(c => along(near, c) + Math.max(Math.abs(along(up, c)) / edge, Math.abs(along(right, c)) / edge / aspect))) / this.view.camera.closer;
+  }
+  heightFor(width) {
+    const [x, y, z] = this.box, across = x * Math.cos(.5) + z * Math.sin(.5), upright = y + .3 * z;
+    return Math.round(Math.min(Math.max(width * 1.06 * upright / across, 240), 620, Math.max(280, innerHeight * .7)));
   }
   draw() {
-    const {canvas, geometry, surfaces, box} = this, width = canvas.clientWidth;
+    const {canvas} = this, width = canvas.clientWidth;
     if (!width || !this.renderer) return;
-    const height = Math.round(Math.min(width * .76, 520)), between = this.timeline.between(this.run), colour = this.colours[this.view.colour] ?? this.colours.grey;
-    if (this.width !== width) { this.renderer.setSize(width, height); canvas.style.width = "100%"; this.camera.perspective({aspect: width / height}); this.width = width; }
+    const height = this.heightFor(width);
+    if (this.width !== width || this.height !== height) { this.renderer.setSize(width, height); canvas.style.width = "100%"; Object.assign(this, {width, height}); }
+    this.paintCells();
+    this.render(width, height);
+    const fine = window.devicePixelRatio || 1, {over} = this;
+    over.width = Math.round(width * fine); over.height = Math.round(height * fine);
+    const context = over.getContext("2d");
+    context.scale(fine, fine);
+    this.paintSigns(context, width, height);
+  }
+  /// Places and colours of all nodes.
+  paintCells() {
+    const {geometry, surfaces, box, between} = this, colour = this.colours[this.view.colour] ?? this.colours.grey;
+    if (!surfaces.count) return;
     const nodes = surfaces.between(between), places = surfaces.wrapped(nodes, box, this.periodic), position = geometry.attributes.position, tones = geometry.attributes.colour;
     geometry.attributes.normal.data.set(normalsAt(places, surfaces.triangles));
     for (let i = 0; i < places.length; ++i) position.data[i] = places[i] - box[i % 3] / 2;
@@ -146,13 +160,18 @@ class SpaceView {
       for (let i = surfaces.first[own]; i < surfaces.first[own + 1]; ++i) tones.data.set(rgb, 3 * i);
     }
     for (const name of ["position", "normal", "colour"]) geometry.attributes[name].needsUpdate = true;
-    const far = this.distance * 1.15 * Math.hypot(...box) / (2 * Math.tan(16 * Math.PI / 180)), {azimuth, elevation} = this;
-    this.camera.perspective({near: far / 100, far: far * 10});
-    this.camera.position.set(far * Math.cos(elevation) * Math.sin(azimuth), far * Math.sin(elevation), far * Math.cos(elevation) * Math.cos(azimuth));
+    this.program.uniforms.fill.value = [...rgbOf(css("--cut")), tension ? 1 : .45];
+  }
+  render(width, height) {
+    const far = this.far = this.distance(width / height), [, , near] = this.directions;
+    this.camera.perspective({aspect: width / height, near: far / 100, far: far * 10});
+    this.camera.position.set(...near.map(v => far * v));
     this.camera.lookAt([0, 0, 0]);
     this.drawCut();
-    this.frameProgram.uniforms.tone.value = rgbOf(css("--quiet") || css("--text"));
-    if (this.wallProgram) this.wallProgram.uniforms.tone.value = rgbOf(css("--quiet"));
+    this.drawArrows();
+    this.frameProgram.uniforms.tone.value = rgbOf(css("--quiet"));
+    this.arrowProgram.uniforms.tone.value = rgbOf(css("--text"));
+    for (const program of this.glassPrograms) program.uniforms.tone.value = rgbOf(css("--quiet"));
     this.renderer.render({scene: this.scene, camera: this.camera});
   }
   /// The plane as the shader takes it, on the side of the eye, and its rim in the box.
@@ -165,7 +184,7 @@ class SpaceView {
       [[-1, -1], [1, -1], [1, 1], [-1, 1]].forEach(([a, b], i) => { position.data[3 * i + axis] = place; position.data[3 * i + u] = a * half[u]; position.data[3 * i + v] = b * half[v]; });
     }
     position.needsUpdate = true;
-    this.program.uniforms.plane.value = plane;
+    this.plane.value = plane;
   }
   cutControls() {
     const words = () => this.cut.axis === null ? "" : `${"xyz"[this.cut.axis]} = ${format(this.cut.share * this.box[this.cut.axis], 3)} µm`, where = element("span", {class: "quiet"});
@@ -173,12 +192,57 @@ class SpaceView {
     const changed = () => { slider.disabled = this.cut.axis === null; where.textContent = words(); slider.setAttribute("aria-valuetext", words()); this.draw(); };
     return element("div", {class: "controls"}, choice("Cut", [["", "none"], ["0", "across x"], ["1", "across y"], ["2", "across z"]], "", axis => { this.cut.axis = axis === "" ? null : Number(axis); changed(); }), slider, where);
   }
-  turn(dx, dy) {
-    this.azimuth -= dx;
-    this.elevation = Math.min(1.5, Math.max(-1.5, this.elevation + dy));
-    this.draw();
+  /// Arrows in the walls that move, which go with them; and one below the box where the fluid is driven along x.
+  drawArrows() {
+    const {position} = this.arrowGeometry.attributes, [lx, ly, lz] = this.box, arrows = [], apart = lx / 3, long = Math.min(apart * .55, 2.2 * Math.max(ly, lz) / 3);
+    position.data.fill(0);
+    wallMotion(this).forEach(({speed, gone}, i) => {
+      if (!speed) return;
+      const sign = Math.sign(speed), offset = ((gone % apart) + apart) % apart;
+      for (const z of [-.25, .25]) for (let k = -1; k <= 3; ++k) {
+        const middle = k * apart + offset;
+        if (middle < long / 2 || middle > lx - long / 2) continue;
+        arrows.push(arrowTriangles([middle - lx / 2 - sign * long / 2, (i ? 1 : -1) * ly / 2, z * lz], [sign * long, 0, 0], [0, 0, 1]));
+      }
+    });
+    const driven = drivenAlong(this.data);
+    if (driven) { const flow = Math.min(lx / 3, ly / 2); arrows.push(arrowTriangles([-driven * flow / 2, -ly / 2 * 1.12, lz / 2], [driven * flow, 0, 0], [0, 1, 0])); }
+    arrows.slice(0, SpaceView.arrows).forEach((triangles, i) => position.data.set(triangles, 27 * i));
+    position.needsUpdate = true;
   }
-  zoomBy(factor) { this.distance = Math.min(4, Math.max(.1, this.distance / factor)); this.draw(); }
+  /// What a picture in perspective wants beside it: the axes, and a length in the middle of the box.
+  paintSigns(context, width, height) {
+    const [right, up] = this.directions, at = [34, height - 34], long = 22;
+    context.font = "12px system-ui, sans-serif"; context.lineCap = "round";
+    ["x", "y", "z"].forEach((name, k) => {
+      const [dx, dy] = [right[k], -up[k]], far = Math.hypot(dx, dy);
+      context.strokeStyle = context.fillStyle = css("--text"); context.lineWidth = 1.6;
+      context.beginPath(); context.moveTo(...at); context.lineTo(at[0] + long * dx, at[1] + long * dy); context.stroke();
+      if (far > .2) context.fillText(name, at[0] + dx * long + 8 * dx / far - 3, at[1] + dy * long + 8 * dy / far + 4);
+    });
+    const scale = height / 2 / SpaceView.opening / this.far, bar = barLength(width / scale / 5), words = `${format(bar)} µm`, left = width - 14 - bar * scale, bottom = height - 14;
+    context.lineWidth = 2; context.lineCap = "butt";
+    context.beginPath(); context.moveTo(left, bottom); context.lineTo(left + bar * scale, bottom); context.stroke();
+    context.fillText(words, left + bar * scale / 2 - context.measureText(words).width / 2, bottom - 6);
+  }
+  /// The picture in so many pixels, for a figure: a canvas.
+  picture(width, height) {
+    const {renderer} = this, copy = Object.assign(document.createElement("canvas"), {width, height}), {dpr} = renderer;
+    renderer.dpr = 1; renderer.setSize(width, height);
+    this.render(width, height);
+    copy.getContext("2d").drawImage(this.canvas, 0, 0);
+    renderer.dpr = dpr; this.width = null;
+    this.draw();
+    return copy;
+  }
+  turn(dx, dy) {
+    const {camera} = this.view;
+    camera.azimuth -= dx;
+    camera.elevation = Math.min(1.5, Math.max(-1.5, camera.elevation + dy));
+    this.view.turn();
+  }
+  zoomBy(factor) { this.view.camera.closer = Math.min(9, Math.max(.3, this.view.camera.closer * factor)); this.view.turn(); }
+  showAll() { Object.assign(this.view.camera, SpaceView.start); this.view.turn(); }
   listen() {
     const {canvas} = this;
     let held = null, fingers = null;
@@ -201,7 +265,7 @@ class SpaceView {
     canvas.addEventListener("wheel", event => { if (event.ctrlKey || event.metaKey) { event.preventDefault(); this.zoomBy(Math.exp(-event.deltaY / 500)); } }, {passive: false});
     canvas.addEventListener("keydown", event => {
       const act = {ArrowLeft: () => this.turn(.1, 0), ArrowRight: () => this.turn(-.1, 0), ArrowUp: () => this.turn(0, .1), ArrowDown: () => this.turn(0, -.1), "+": () => this.zoomBy(1.25), "-": () => this.zoomBy(.8),
-        "0": () => { Object.assign(this, SpaceView.start); this.draw(); }}[event.key];
+        "0": () => this.showAll()}[event.key];
       if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
       act();
       event.preventDefault();
