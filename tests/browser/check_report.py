@@ -6,6 +6,7 @@ import base64
 import csv
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -74,7 +75,7 @@ class A_run_without_attraction(PageCase):
 
     def test_is_not_told_as_aggregation(self):
         page = self.open(self.directory / "report.html")
-        text = page.run("document.body.innerText.replace(document.querySelector('h1').innerText, '').replaceAll('rouleau run --error-bar', '').replaceAll('Aggregate size', '?')")
+        text = page.run("document.body.innerText.replace(document.querySelector('h1').innerText, '').replace(document.querySelector('footer').innerText, '').replaceAll('rouleau run --error-bar', '').replaceAll('Aggregate size', '?')")
         self.assertGreater(page.run("Math.max(...timeline.runs[0].summary.aggregate_history.flatMap(h => h.members.map(m => m.length)))"), 1)
         self.assertNotRegex(text, r"(?i)rouleau[x ]|aggregat|joined|broke|break-up")
         self.assertEqual(page.run("document.querySelectorAll('.story button, button.event:not(.stage)').length"), 0)
@@ -487,12 +488,11 @@ class The_page_of_a_run_in_three_dimensions(PageCase):
                 cells[name] = [[7] if first <= k <= last else [] for k in range(len(lines))]
             elif name not in ("ids", "types", "from"):
                 cells[name] = [lines[0][first:last + 1]]
-        for drawn, outputs in (("outlines", range(len(data["step"]))), ("surfaces", data["surfaces"]["outputs"])):
-            drawn = data[drawn]
-            drawn["cells"] = [7]
-            for k, output in enumerate(outputs):
-                if not first <= output <= last:
-                    drawn["there"][k], drawn["nodes"][k], drawn["origin_um"][k], drawn["tension"]["values"][k] = [], "", [], ""
+        drawn = data["surfaces"]
+        drawn["cells"] = [7]
+        for k, output in enumerate(drawn["outputs"]):
+            if not first <= output <= last:
+                drawn["there"][k], drawn["nodes"][k], drawn["origin_um"][k], drawn["tension"]["values"][k] = [], "", [], ""
         file = self.directory / "coming.html"
         file.write_text(f'{begin}<script type="application/json" id="data">{json.dumps(data)}</script>{end}')
         page = self.open(file)
@@ -502,7 +502,7 @@ class The_page_of_a_run_in_three_dimensions(PageCase):
             seen = {}
             for place in (0, first - .6, first - .4, first, last, last + .4, last + .6, last + 2):
                 page.run(f"timeline.seek({place})")
-                there = page.run("timeline.animation.outlines.has(timeline.animation.nodes(), 0)")
+                there = page.run("timeline.animation.outlines.has(timeline.animation.shapes(), 0)")
                 self.assertEqual(there, first - .5 < place < last + .5, (colour, place))
                 seen.setdefault(there, set()).add(page.run(self.PIXELS)[0])
             self.assertEqual(len(seen[False]), 1, "a cell that is not there is drawn")
@@ -566,6 +566,63 @@ class The_page_of_a_run_in_three_dimensions(PageCase):
         self.assertLess(page.run(self.PIXELS)[0], 0.6 * whole[0])  # the box alone
         page.run(change % ("select[aria-label='Cut']", "", "change"))
         self.assertEqual(page.run(self.PIXELS), whole)
+
+    def test_fills_what_is_cut(self):
+        for scheme in ("light", "dark"):
+            page = self.open(self.directory / "report.html", scheme=scheme, part="#strain=0.4")
+            page.run(Every_page_on_every_screen.DRAWN)
+            page.run("(() => { const s = document.querySelector('select[aria-label=Cut]'); s.value = '2'; s.dispatchEvent(new Event('change')); })()")
+            # The cell lies in the middle of the box, which is in the middle of the picture.
+            seen, wanted = page.run("""(() => { const c = document.querySelector("canvas.space"), gl = c.getContext("webgl2") ?? c.getContext("webgl"), p = new Uint8Array(4);
+                gl.readPixels(c.width >> 1, c.height >> 1, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, p); return [[...p].slice(0, 3), rgbOf(css("--cut")).map(v => 255 * v)]; })()""")
+            for a, b in zip(seen, wanted):
+                self.assertAlmostEqual(a, b, delta=2)
+
+    def test_has_a_section_that_is_one_plane(self):
+        """At the start the cell is a sphere: what a plane cuts of it is a circle of a known radius, or nothing."""
+        page = self.open(self.directory / "report.html")
+        page.run("timeline.seek(0)")
+        centre, radius = page.run("""(() => { const nodes = timeline.animation.section.surfaces.at(0), n = nodes.length / 3, c = [0, 1, 2].map(k => nodes.filter((_, i) => i % 3 === k).reduce((a, b) => a + b) / n);
+            return [c, Math.hypot(nodes[0] - c[0], nodes[1] - c[1], nodes[2] - c[2])]; })()""")
+        for height in (-0.8, 0, 0.5, 1.1):
+            page.run(f"timeline.animation.section.z = {centre[2] + height * radius}")
+            shapes = page.run("timeline.animation.shapes()[0].map(line => [...line.xy])")
+            self.assertEqual(len(shapes), 0 if abs(height) > 1 else 1)
+            for line in shapes:
+                x, y = line[::2], line[1::2]
+                area = abs(sum(a * d - b * c for a, b, c, d in zip(x, y, x[1:] + x[:1], y[1:] + y[:1]))) / 2
+                self.assertAlmostEqual(area / (3.141592653589793 * radius ** 2 * (1 - height ** 2)), 1, delta=0.03)
+        page.run("(() => { const s = document.querySelector('input[aria-label=\"Place of the section\"]'); s.value = 0; s.dispatchEvent(new Event('input')); })()")
+        self.assertEqual(page.run("timeline.animation.shapes()[0].length"), 0)
+        self.assert_sound(page)
+
+    def test_makes_a_figure_with_a_bar_and_a_caption(self):
+        page = self.open(self.directory / "report.html", scheme="dark", part="#strain=0.4")
+        page.run("window.files = []; download = async (name, blob) => files.push([name, [...new Uint8Array(await blob.arrayBuffer())]]); null")
+        for kind in ("PDF", "PNG"):
+            page.run(f"[...document.querySelectorAll('.menu button')].find(b => b.textContent === 'Figure, {kind}').click()")
+        page.wait("files.length === 2")
+        files = {Path(name).suffix: bytes(content) for name, content in page.run("files")}
+        pdf = files[".pdf"]
+        table = int(re.search(rb"startxref\n(\d+)", pdf)[1])
+        self.assertTrue(pdf.startswith(b"%PDF-1.4") and pdf[table:].startswith(b"xref"))
+        for number, place in enumerate(re.findall(rb"(\d{10}) 00000 n", pdf)):
+            self.assertTrue(pdf[int(place):].startswith(f"{number + 1} 0 obj".encode()))
+        for part in (b"DCTDecode", b"A spherical capsule in shear", b"strain 0.4", b"Membrane tension, \xb5N/m", b"Computed with Rouleau", b"\xb5m) Tj"):
+            self.assertIn(part, pdf)
+        self.assertEqual(int.from_bytes(files[".png"][16:20], "big"), 3 * 720)
+        self.assertFalse(page.run("document.documentElement.classList.contains('paper') || printing"))
+        self.assert_sound(page)
+
+    def test_lies_beside_another_one_and_turns_with_it(self):
+        rouleau("report", "--compare", self.directory, self.directory, "--out", folder / "spaces.html")
+        page = self.open(folder / "spaces.html")
+        page.run(Every_page_on_every_screen.DRAWN)
+        pixels = self.PIXELS.replace('document.querySelector("canvas.space")', "document.querySelectorAll('canvas.space')[1]")
+        before = page.run(pixels)
+        page.run("document.querySelector('canvas.space').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft', bubbles: true}))")
+        self.assertNotEqual(page.run(pixels), before)
+        self.assert_sound(page, SCREENS["desktop"]["width"])
 
     def test_colours_one_cell_by_its_tension(self):
         page = self.open(self.directory / "report.html", part="#strain=0.4")
@@ -654,6 +711,45 @@ class Walls_that_are_no_planes(PageCase):
             page.run(change % ("input[aria-label='Place of the cut']", "0", "input"))
             self.assertLess(page.run(pixels)[0], 0.3 * whole[0])
             self.assert_sound(page)
+
+
+class A_tube(PageCase):
+    """Plasma whose flow has developed."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = Browser(draws_space=True)
+        rouleau("run", SOURCE / "scenes/tube-3d.json", "--out", folder / "plasma", "--quiet", "--max-steps", "8", "--set", '/stages/0/start="developed"',
+                "--set", '/output/fields={"seconds": 1e-6, "quantities": ["velocity"]}', "--set", '/output/cells={"seconds": 1e-6}')
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.__exit__()
+
+    def test_has_the_profile_of_poiseuille(self):
+        page = self.open(folder / "plasma" / "report.html")
+        places, profile = page.run("(() => { const flow = timeline.across, u = flow.profile(flow.between); return [[...flow.places(u.length)], [...u]]; })()")
+        for y, u in zip(places, profile):  # G / (4 viscosity) (R^2 - r^2), um/s
+            self.assertAlmostEqual(u, 1e4 / (4 * 1.2e-3) * 1e-6 * max(0, 100 - (y - 10) ** 2), delta=0.02 * 1e4 / (4 * 1.2e-3) * 1e-4)
+        self.assertEqual(page.run("document.querySelectorAll('canvas.space, canvas.across').length"), 2)
+        self.assert_sound(page, SCREENS["desktop"]["width"])
+
+
+class The_foot_of_a_page(PageCase):
+    def test_says_what_made_it_how_to_cite_it_and_how_to_make_it_again(self):
+        version = rouleau("--version").stdout.split()[1]
+        for file, command in (("a/report.html", "rouleau run scene.json"), ("both.html", "rouleau report --compare a b")):
+            page = self.open(folder / file)
+            words = page.run("document.querySelector('footer').textContent")
+            for part in (f"Rouleau {version}", "@software{rouleau", command):
+                self.assertIn(part, words)
+            for place in (str(folder), str(SOURCE), str(PLUGINS)):
+                self.assertNotIn(place, (folder / file).read_text())
+            self.assert_sound(page)
+        page = self.open(folder / "a/report.html")
+        page.run("window.files = []; download = async (name, blob) => files.push([name, await blob.text()]); [...document.querySelectorAll('footer button')].find(b => b.textContent === 'Save scene.json').click()")
+        page.wait("files.length > 0")
+        self.assertEqual(page.run("files[0]"), ["scene.json", (folder / "a/scene.json").read_text()])
 
 
 class Two_runs(PageCase):

@@ -30,6 +30,12 @@ const wordsWithUnit = (name, ending, unit) => plainWords(name.slice(0, name.leng
 const spelled = name => { const [ending, unit] = endingOf(name) ?? ["", ""]; return wordsWithUnit(name, ending, unit); };
 /// The same for what is drawn: {title, factor}.
 const drawnAs = name => { const [ending, , unit, factor] = endingOf(name) ?? ["", "", "", 1]; return {title: wordsWithUnit(name, ending, unit), factor}; };
+/// Lists of what has the same key.
+function grouped(list, key) {
+  const groups = new Map();
+  for (const one of list) { const k = key(one); if (!groups.has(k)) groups.set(k, []); groups.get(k).push(one); }
+  return groups;
+}
 const seconds = t => t === undefined || t === null ? "–" : t < 120 ? `${format(t, 3)} s` : t < 7200 ? `${format(t / 60, 3)} min` : `${format(t / 3600, 3)} h`;
 const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 /// Tones of lines, cells and runs: any two differ for every kind of colour blindness (tests/browser measures it).
@@ -38,7 +44,7 @@ const lineTones = ["--c0", "--c1", "--c2", "--c3", "--c4", "--c5"];
 /// A column is {title, number, and key or value (of a row, a text, number or node), mark (class of a cell)}. With
 /// `stacked`, on a narrow screen every row becomes a list of its columns; with `sortable` a click on a title sorts by what
 /// the column's `sort` (of a row; else key or value) gives, undefined ones last. `attributes(row)` are the row's.
-function table(columns, rows, {stacked = false, sortable = false, attributes = () => ({})} = {}) {
+function table(columns, rows, {stacked = false, sortable = false, fitting = false, attributes = () => ({})} = {}) {
   const valueOf = (c, row) => c.value ? c.value(row) : row[c.key];
   const trs = rows.map(row => element("tr", attributes(row), ...columns.map(c => {
     const value = valueOf(c, row);
@@ -60,7 +66,7 @@ function table(columns, rows, {stacked = false, sortable = false, attributes = (
       body.append(...order.map(row => trs[row]));
     }}, columns[i].title));
   });
-  return element("div", {class: "card scroll" + (stacked ? " stacked" : "") + (sortable ? " sortable" : "")},
+  return element("div", {class: "card scroll" + (stacked ? " stacked" : "") + (sortable ? " sortable" : "") + (fitting ? " fitting" : "")},
     element("table", {}, ...(columns.some(c => c.title) ? [element("thead", {}, element("tr", {}, ...heads))] : []), body));
 }
 

@@ -49,6 +49,7 @@ function showLimits(result) {
   showCases(result.cases ?? []);
   showSoundness(result);
   showOrigin(result, result.limits_file, "Limits");
+  footer(programOf(result), "This page shows one search for limits; all that it draws is in it.", result.limits_file ? `rouleau limits ${result.limits_file}` : null, "with the file of the search");
   return map;
 }
 

@@ -73,6 +73,18 @@ class Outlines {
   }
 }
 
+/// Red, green and blue, from 0 to 1, of a colour in the words of css.
+const rgbOf = (() => {
+  const context = document.createElement("canvas").getContext("2d", {willReadFrequently: true}), known = new Map();
+  return text => {
+    if (!known.has(text)) {
+      context.fillStyle = "#888"; context.fillStyle = text; context.clearRect(0, 0, 1, 1); context.fillRect(0, 0, 1, 1);
+      known.set(text, [...context.getImageData(0, 0, 1, 1).data].slice(0, 3).map(v => v / 255));
+    }
+    return known.get(text);
+  };
+})();
+
 /// Interpolated colours as css texts. Cividis, and blue to orange: both in order for every eye.
 const rampStops = {
   cividis: ["#00204d", "#2b3f6d", "#575c6d", "#7c7b78", "#a69d75", "#d3c164", "#ffe945"],
@@ -119,19 +131,20 @@ function cellColours(run) {
     const types = [...new Set(cells.types)];
     colours.type = {title: "cell type", tone: cell => lineTones[types.indexOf(cells.types[cell]) % lineTones.length],
       bar: () => types.map((type, i) => element("span", {}, element("i", {class: "dot", style: `background:var(${lineTones[i % lineTones.length]})`}), type))};
-    const ranged = (name, title, unit, low, high) => ({title, colour: (cell, {a, b, share}) => {
+    const ranged = (name, title, unit, low, high) => withScale({title, colour: (cell, {a, b, share}) => {
       const [at, then] = [a, b].map(output => cells[name][cell][output]), from = at ?? then, to = then ?? at;
       return from === null || to === null ? "#888" : rampColour(rampStops.cividis, ((from + share * (to - from)) - low) / (high - low || 1));
-    }, bar: () => rampBar(`${spelled(title)}${unit}`, rampStops.cividis, [format(low, 3), format((low + high) / 2, 3), `≥ ${format(high, 3)}`])});
+    }}, {title: `${spelled(title)}${unit}`, stops: rampStops.cividis, ends: [format(low, 3), format((low + high) / 2, 3), `≥ ${format(high, 3)}`]});
     const deformation = cells.deformation?.flat() ?? [], speeds = cells.speed_um_per_s?.flat() ?? [];
     if (deformation.some(v => v !== null)) colours.deformation = ranged("deformation", "deformation", "", percentile(deformation, .01), percentile(deformation, .99));
     if (speeds.some(v => v !== null)) colours.speed = ranged("speed_um_per_s", "speed of the cell", ", µm/s", 0, percentile(speeds, .99));
   }
   const scale = run.outlines?.tension?.scale_N_per_m || run.surfaces?.tension?.scale_N_per_m;
-  if (scale) colours.tension = {title: "membrane tension", tension: share => rampColour(rampStops.tension, (share + 1) / 2), tone: () => "--single",
-    bar: () => rampBar("Membrane tension, µN/m", rampStops.tension, [`≤ ${format(-scale * 1e6, 3)}`, "0", `≥ ${format(scale * 1e6, 3)}`])};
+  if (scale) colours.tension = withScale({title: "membrane tension", tension: share => rampColour(rampStops.tension, (share + 1) / 2), tone: () => "--single"},
+    {title: "Membrane tension, µN/m", stops: rampStops.tension, ends: [`≤ ${format(-scale * 1e6, 3)}`, "0", `≥ ${format(scale * 1e6, 3)}`]});
   colours.grey = {title: "grey", tone: () => "--single", bar: () => []};
   return colours;
 }
+const withScale = (colour, scale) => ({...colour, scale, bar: () => rampBar(scale.title, scale.stops, scale.ends)});
 const rampBar = (title, stops, ends) => [element("div", {}, title), element("div", {class: "ramp", style: `background:linear-gradient(to right, ${stops.join(", ")})`}),
   element("div", {class: "ends"}, ...ends.map(text => element("span", {}, text)))];

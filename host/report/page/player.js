@@ -31,10 +31,11 @@ function animationControls(timeline, animations, view, strip = [], spaces = []) 
     box.checked = view.tracers;
     second.append(element("label", {}, box, "Tracers"));
   }
-  const each = act => () => { for (const one of spaces.length ? spaces.slice(0, 1) : animations) act(one); };
+  const each = act => () => { for (const one of spaces.length ? spaces.slice(0, 1) : animations) act(one); };  // boxes in space turn together
   second.append(element("span", {class: "group"}, button("−", each(a => a.zoomBy(1 / 1.5)), {"aria-label": "zoom out"}), button("+", each(a => a.zoomBy(1.5)), {"aria-label": "zoom in"}), button("Fit", each(a => a.showAll()))));
-  if (animations.some(a => a.outlines)) second.append(followControl(animations, view));
-  second.append(saveMenu("Save", [["Picture, PNG", () => savePicture(animations)], ["Picture, SVG", () => saveSvg(animations)], ["Video", event => saveVideo(timeline, animations[0], event.currentTarget)]]),
+  if (animations.some(a => a.outlines?.count)) second.append(followControl(animations, view));
+  const shown = spaces.length ? spaces : animations;
+  second.append(saveMenu("Save", [["Picture, PNG", () => savePicture(shown)], ...(animations.length ? [[spaces.length ? "Section, SVG" : "Picture, SVG", () => saveSvg(animations)]] : []), ["Figure, PDF", () => saveFigures(shown, "pdf")], ["Figure, PNG", () => saveFigures(shown, "png")], ["Video", event => saveVideo(timeline, shown[0], event.currentTarget)]]),
     button("Copy link", event => copyLink(timeline, event.currentTarget), {title: "a link to this page at this instant"}));
   addEventListener("keydown", event => {
     if (event.target.closest("button, select, input, summary, a, textarea") || event.ctrlKey || event.metaKey || event.altKey) return;

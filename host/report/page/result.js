@@ -28,6 +28,12 @@ function withError(value, error, spread = null) {
   return (error > 0 ? `${value.toFixed(decimals)} ± ${up.toFixed(decimals)}` : value.toFixed(decimals)).replace("-", "−");
 }
 
+/// A mean speed in the unit that keeps it readable.
+function speedWords({value, error, spread}) {
+  const [unit, factor] = Math.abs(value) >= 1e-3 ? ["mm/s", 1e3] : ["µm/s", 1e6];
+  return `${withError(factor * value, factor * error, factor * spread)} ${unit}`;
+}
+
 /// What the aggregates did: {sentences, numbers}, of runs with two cells or more.
 function aggregation(run) {
   const history = joinHistory(run), cells = run.cells?.types.length ?? 0, at = h => outputAt(run, h.time_s), sentences = [], numbers = [];
@@ -66,10 +72,10 @@ function resultOf(run) {
   const turns = (summary.rheology || []).at(-1)?.rotation?.[0];
   if (cells === 1 && turns?.turns >= 1) numbers.push({value: format(Math.abs(turns.tank_treading_rad_per_strain), 3), label: "tank-treading, rad per strain", about: `over ${turns.turns} whole turns of the outline`});
   const flow = meanOf(summary, "flow_rate_m2_per_s"), speed = meanOf(summary, "mean_velocity_m_per_s"), depth = run.surfaces?.size_um[2] ?? run.domain?.size_um[2];
-  if (speed) numbers.push({value: `${withError(1e6 * speed.value, 1e6 * speed.error, 1e6 * speed.spread)} µm/s`, label: "mean velocity", about: speed.about});
+  if (speed) numbers.push({value: speedWords(speed), label: "mean velocity", about: speed.about});
   if (flow && summary.dimensions !== 3) numbers.push({value: `${format(flow.value, 3)} m²/s`, label: "flow rate per depth", about: flow.about});
   if (flow && summary.dimensions === 3 && depth) numbers.push({value: `${format(flow.value * depth * 1e-6, 3)} m³/s`, label: "flow rate", about: flow.about});
-  if (!cells && speed) sentences.push(`The fluid flows at ${withError(1e6 * speed.value, 1e6 * speed.error, 1e6 * speed.spread)} µm/s on average.`);
+  if (!cells && speed) sentences.push(`The fluid flows at ${speedWords(speed)} on average.`);
   const layer = ["cell_free_layer_lower_m", "cell_free_layer_upper_m"].map(name => meanOf(summary, name)?.value).filter(v => typeof v === "number");
   if (layer.length && layersAreThere(summary.rheology.at(-1).means)) numbers.push({value: `${format(1e6 * layer.reduce((a, b) => a + b) / layer.length, 3)} µm`, label: "cell-free layer", about: "mean of both walls over the second half of the last stage"});
   if (typeof summary.conservation?.area_drift_max === "number" && cells) numbers.push({value: `${format(100 * summary.conservation.area_drift_max, 2)} %`, label: `largest ${summary.dimensions === 3 ? "volume" : "area"} drift`, about: "of any cell at any time: a measure of the error"});
@@ -78,9 +84,8 @@ function resultOf(run) {
   return {sentences, numbers};
 }
 
-function expectedOf(run) {
-  try { const {expected} = JSON.parse(run.scene); return typeof expected === "string" ? expected : null; } catch { return null; }  // a scene may have comments
-}
+function sceneOf(run) { try { return JSON.parse(run.scene); } catch { return null; } }  // a scene may have comments
+function expectedOf(run) { const expected = sceneOf(run)?.expected; return typeof expected === "string" ? expected : null; }
 
 /// How a run ended where that is not as it should be, and what it cost.
 function statusBox(run) {

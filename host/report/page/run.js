@@ -25,6 +25,12 @@ function notesOf(run) {
 }
 const whyNoAnimation = run => run.shown.note ? [element("p", {}, run.shown.note)] : [];
 
+/// The scene goes with the page, so that a reader can run it again.
+function runFooter(run) {
+  const save = run.scene ? [button("Save scene.json", () => download("scene.json", new Blob([run.scene], {type: "application/json"})), {class: "small"})] : [];
+  footer(programOf(run.summary), "This page shows one run; all that it draws is in it, and it can be sent as it is.", run.scene ? "rouleau run scene.json" : null, "with the scene that this page carries", save, licences());
+}
+
 function showRun(run) {
   const summary = run.summary || {}, title = summary.title || "Untitled scene", timeline = new Timeline([run]);
   document.title = `${title} – Rouleau`;
@@ -34,7 +40,7 @@ function showRun(run) {
   if (!timeline.count) section("Results", element("p", {}, "No output has been written."), ...whyNoAnimation(run));
   else showResults(timeline, run);
   showTables(run);
-  licences();
+  runFooter(run);
   if (timeline.count) begin(timeline, run, summary);
   return timeline;
 }
@@ -54,7 +60,7 @@ function showResults(timeline, run) {
   const events = eventsOf(run), view = new View([run]), box = element("div", {class: "stage"});
   section(run.cells ? "Cells" : "Flow", box);
   if (isDrawn(run)) {
-    const card = element("div", {class: "card"}), {space, animation, parts} = drawnRun(card, timeline, 0, view), [first, second] = animationControls(timeline, [animation], view, [storyStrip(timeline, events)], space ? [space] : []);
+    const card = element("div", {class: "card"}), {space, animation, parts} = drawnRun(card, timeline, 0, view), [first, second] = animationControls(timeline, animation ? [animation] : [], view, [storyStrip(timeline, events)], space ? [space] : []);
     timeline.animation = animation;
     card.append(first, instantLine(timeline, 0), second, ...failureNote(run), ...whyNoAnimation(run));
     if (space) card.append(note("Drag, or two fingers, to turn; Ctrl and the wheel, or + and −, to come closer; a cut across an axis opens all that lies before it."));
@@ -69,12 +75,13 @@ function showResults(timeline, run) {
 function drawnRun(card, timeline, r, view) {
   const run = timeline.runs[r];
   if (!isInSpace(run)) return {space: null, animation: new Animation(card, timeline, r, view), parts: []};
-  const surfaces = new Surfaces(run.surfaces ?? noSurfaces), section = new Section(run, surfaces), box = element("div", {class: "card"}), parts = [box];
+  const surfaces = new Surfaces(run.surfaces ?? noSurfaces), section = new Section(run, surfaces), box = element("div", {class: "card"}), parts = [];
   const space = new SpaceView(card, timeline, r, view, surfaces), name = run.walls || run.fields ? "Section and flow" : "Section";
   box.append(element("div", {class: "chart-head"}, element("h3", {}, name)));
-  const animation = new Animation(box, timeline, r, view, section);
-  box.append(sectionControls(section, animation));
-  if (run.fields?.across) { const flow = element("div", {class: "card"}); new FlowAcross(flow, timeline, r); parts.push(flow); }
+  // Of plasma in a box shorter than it is high a section shows nothing that its profile does not.
+  const animation = run.fields?.across && !surfaces.count && space.times > 1 ? null : new Animation(box, timeline, r, view, section);
+  if (animation) { box.append(sectionControls(section, animation)); parts.push(box); }
+  if (run.fields?.across) { const flow = element("div", {class: "card"}); timeline.across = new FlowAcross(flow, timeline, r); parts.push(flow); }
   return {space: space.renderer ? space : null, animation, parts: [element("div", {class: parts.length > 1 ? "pair" : ""}, ...parts)]};
 }
 /// Where the section lies.

@@ -1,20 +1,9 @@
 // ------------------------------------------------------------------------------------------------------- the box in space
-const rgbOf = (() => {
-  const context = document.createElement("canvas").getContext("2d", {willReadFrequently: true}), known = new Map();
-  return text => {
-    if (!known.has(text)) {
-      context.fillStyle = "#888"; context.fillStyle = text; context.clearRect(0, 0, 1, 1); context.fillRect(0, 0, 1, 1);
-      known.set(text, [...context.getImageData(0, 0, 1, 1).data].slice(0, 3).map(v => v / 255));
-    }
-    return known.get(text);
-  };
-})();
-
 /// A flat arrow as three triangles from `tail` along `along` (a vector as long as the arrow), its breadth along `across` (of length 1).
 function arrowTriangles(tail, along, across) {
   const length = Math.hypot(...along), at = (share, side) => tail.map((t, k) => t + share * along[k] + side * length * across[k]);
-  const [a, b, c, d] = [at(0, .035), at(0, -.035), at(.62, -.035), at(.62, .035)];
-  return [a, b, c, a, c, d, at(.62, .13), at(.62, -.13), at(1, 0)].flat();
+  const [a, b, c, d] = [at(0, .06), at(0, -.06), at(.6, -.06), at(.6, .06)];
+  return [a, b, c, a, c, d, at(.6, .18), at(.6, -.18), at(1, 0)].flat();
 }
 
 /// A run in its box at the timeline's instant: surfaces of cells, walls, the arrows of what moves. Drag, two fingers or arrow keys turn it;
@@ -29,12 +18,21 @@ class SpaceView {
     const data = timeline.runs[run], {domain} = data;
     Object.assign(this, {timeline, run, data, view, surfaces, places: surfaces.placesOf(data), colours: cellColours(data), fields: data.fields && new Fields(data), box: domain.size_um, ly: domain.size_um[1], stages: stagesOf(data),
       periodic: [domain.periodic_x, domain.periodic_y, domain.periodic_z], cut: {axis: null, share: .5}});
+    // A periodic box that is shorter than it is high is shown as often as makes sense of it.
+    const [x, y, z] = this.box, high = Math.max(y, z);
+    this.times = domain.periodic_x && x < .75 * high ? Math.min(24, Math.ceil(1.25 * high / x)) : 1;
+    this.shown = [this.times * x, y, z];
     view.camera ??= {...SpaceView.start};
-    this.canvas = element("canvas", {class: "view space", role: "img", tabindex: 0, "aria-label": `${this.words()} in a box of ${this.box.map(l => format(l, 3)).join(" by ")} µm, seen in perspective. Arrow keys turn it, plus and minus zoom.`});
+    this.canvas = element("canvas", {class: "view space", role: "img", tabindex: 0, "aria-label": `${this.words()} in a box of ${this.box.map(l => format(l, 3)).join(" by ")} µm, ${this.times > 1 ? `${this.times} periods of it, ` : ""}seen in perspective. Arrow keys turn it, plus and minus zoom.`});
     this.over = element("canvas", {class: "over", "aria-hidden": "true"});
     this.bar = element("div", {class: "bar cells"});
     parent.append(element("div", {class: "view-box"}, this.canvas, this.over), this.cutControls(), this.bar);
-    try { this.begin(); } catch { parent.replaceChildren(note("This browser has no WebGL: the surfaces are in frames.xmf, for ParaView.")); return; }
+    try { this.begin(); } catch (error) {
+      if (this.scene) throw error;  // there is WebGL
+      this.renderer = null;
+      parent.replaceChildren(note("This browser has no WebGL: the surfaces are in frames.xmf, for ParaView."));
+      return;
+    }
     timeline.listeners.push(() => this.draw());
     view.listeners.push(() => { this.showBar(); this.draw(); });
     view.turned.push(() => this.draw());
@@ -56,17 +54,18 @@ class SpaceView {
     this.camera = new Camera(gl, {fov: 32, near: .01, far: 100});
     this.scene = new Transform();
     this.plane = {value: SpaceView.uncut};
-    const dynamic = (size, count) => ({size, data: new Float32Array(size * count), usage: gl.DYNAMIC_DRAW}), add = (geometry, program, mode = gl.TRIANGLES) => new Mesh(gl, {mode, geometry, program, frustumCulled: false}).setParent(this.scene);
+    const dynamic = (size, count) => ({size, data: new Float32Array(size * count), usage: gl.DYNAMIC_DRAW}), add = (geometry, program, mode = gl.TRIANGLES) => { const mesh = new Mesh(gl, {mode, geometry, program, frustumCulled: false}); mesh.setParent(this.scene); return mesh; };
+    this.repeat = (geometry, program) => { for (let k = 0; k < this.times; ++k) { const mesh = add(geometry, program); mesh.position.x = (k - (this.times - 1) / 2) * this.box[0]; } };
     this.geometry = new Geometry(gl, {position: dynamic(3, nodes), normal: dynamic(3, nodes), colour: dynamic(3, nodes), index: {data: this.surfaces.triangles}});
     // An inner side that is seen lies behind the cut: in one flat colour it is the filled cut itself.
     this.program = new Program(gl, {cullFace: false, uniforms: {plane: this.plane, fill: {value: [1, 1, 1, 0]}},
-      vertex: `attribute vec3 position, normal, colour; uniform mat4 modelViewMatrix, projectionMatrix; uniform mat3 normalMatrix; varying vec3 p, n, c;
-        void main() { p = position; n = normalMatrix * normal; c = colour; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
+      vertex: `attribute vec3 position, normal, colour; uniform mat4 modelMatrix, modelViewMatrix, projectionMatrix; uniform mat3 normalMatrix; varying vec3 p, n, c;
+        void main() { p = (modelMatrix * vec4(position, 1.0)).xyz; n = normalMatrix * normal; c = colour; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
       fragment: `precision highp float; uniform vec4 plane, fill; varying vec3 p, n, c;
         void main() { if (dot(plane.xyz, p) > plane.w) discard;
           vec3 m = normalize(n); float light = 0.42 + 0.5 * max(0.0, dot(m, normalize(vec3(0.3, 0.6, 0.75)))) + 0.14 * abs(m.z), shine = 0.18 * pow(max(0.0, dot(m, normalize(vec3(0.15, 0.4, 0.9)))), 24.0);
           gl_FragColor = vec4(gl_FrontFacing ? c * light + shine : mix(c, fill.rgb, fill.a), 1.0); }`});
-    if (this.surfaces.count) add(this.geometry, this.program);
+    if (this.surfaces.count) this.repeat(this.geometry, this.program);
     const flat = () => new Program(gl, {cullFace: false, uniforms: {plane: this.plane, tone: {value: [0, 0, 0]}}, vertex: "attribute vec3 position; uniform mat4 modelViewMatrix, projectionMatrix; varying vec3 p; void main() { p = position; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
       fragment: "precision highp float; uniform vec4 plane; uniform vec3 tone; varying vec3 p; void main() { if (dot(plane.xyz, p) > plane.w) discard; gl_FragColor = vec4(tone, 1.0); }"});
     this.frameProgram = flat(); this.arrowProgram = flat();
@@ -79,7 +78,7 @@ class SpaceView {
     this.addPlanes(); if (this.data.walls?.surface) this.addWalls(this.data.walls.surface);
     add(this.arrowGeometry, this.arrowProgram);
   }
-  get corners() { return Array.from({length: 8}, (_, i) => [0, 1, 2].map(k => (i >> k & 1 ? 1 : -1) * this.box[k] / 2)); }
+  get corners() { return Array.from({length: 8}, (_, i) => [0, 1, 2].map(k => (i >> k & 1 ? 1 : -1) * this.shown[k] / 2)); }
   edges() {
     const {corners} = this, edges = [];
     for (let i = 0; i < 8; ++i) for (const bit of [1, 2, 4]) if (!(i & bit)) edges.push(...corners[i], ...corners[i | bit]);
@@ -87,21 +86,27 @@ class SpaceView {
   }
   /// Glass that is `thin` seen from the front and dense from the side.
   glass(position, normal, index, thin, dense) {
-    const {Program, Mesh, Geometry} = ogl, {gl} = this.renderer;
+    const {Program, Geometry} = ogl, {gl} = this.renderer;
     const program = new Program(gl, {cullFace: false, transparent: true, depthWrite: false, uniforms: {plane: this.plane, tone: {value: [0, 0, 0]}, seen: {value: [thin, dense]}},
-      vertex: `attribute vec3 position, normal; uniform mat4 modelViewMatrix, projectionMatrix; uniform mat3 normalMatrix; varying vec3 p, n, e;
-        void main() { vec4 seen = modelViewMatrix * vec4(position, 1.0); p = position; n = normalMatrix * normal; e = seen.xyz; gl_Position = projectionMatrix * seen; }`,
+      vertex: `attribute vec3 position, normal; uniform mat4 modelMatrix, modelViewMatrix, projectionMatrix; uniform mat3 normalMatrix; varying vec3 p, n, e;
+        void main() { vec4 seen = modelViewMatrix * vec4(position, 1.0); p = (modelMatrix * vec4(position, 1.0)).xyz; n = normalMatrix * normal; e = seen.xyz; gl_Position = projectionMatrix * seen; }`,
       fragment: `precision highp float; uniform vec4 plane; uniform vec3 tone; uniform vec2 seen; varying vec3 p, n, e;
         void main() { if (dot(plane.xyz, p) > plane.w) discard;
           float along = abs(dot(normalize(n), normalize(e))), dense = seen.x + seen.y * pow(1.0 - along, 2.0); gl_FragColor = vec4(tone * dense, dense); }`});
     program.setBlendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     this.glassPrograms.push(program);
-    new Mesh(gl, {geometry: new Geometry(gl, {position: {size: 3, data: position}, normal: {size: 3, data: normal}, index: {data: index}}), program, frustumCulled: false}).setParent(this.scene);
+    this.repeat(new Geometry(gl, {position: {size: 3, data: position}, normal: {size: 3, data: normal}, index: {data: index}}), program);
   }
-  /// Walls that are planes: the sides of the box across y and z that are not periodic. Across x those are openings.
+  /// Whether the sides of the box across an axis are walls: those that are not periodic, where it is not walls of another shape that
+  /// close the box. Across x such sides are openings.
+  isWalled(axis) {
+    if (axis === 0 || this.periodic[axis]) return false;
+    const domain = sceneOf(this.data)?.domain;
+    return domain ? typeof domain["xyz"[axis]] === "object" : !this.data.walls;
+  }
   addPlanes() {
     const half = this.box.map(l => l / 2), position = [], normal = [], index = [];
-    for (const axis of [1, 2]) if (!this.periodic[axis]) for (const side of [-1, 1]) {
+    for (const axis of [1, 2]) if (this.isWalled(axis)) for (const side of [-1, 1]) {
       const [u, v] = [0, 1, 2].filter(k => k !== axis), first = position.length / 3;
       for (const [a, b] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) { const p = [0, 0, 0], n = [0, 0, 0]; p[axis] = side * half[axis]; p[u] = a * half[u]; p[v] = b * half[v]; n[axis] = side; position.push(...p); normal.push(...n); }
       index.push(...[0, 1, 2, 0, 2, 3].map(i => first + i));
@@ -125,7 +130,7 @@ class SpaceView {
     return Math.max(...this.corners.map(c => along(near, c) + Math.max(Math.abs(along(up, c)) / edge, Math.abs(along(right, c)) / edge / aspect))) / this.view.camera.closer;
   }
   heightFor(width) {
-    const [x, y, z] = this.box, across = x * Math.cos(.5) + z * Math.sin(.5), upright = y + .3 * z;
+    const [x, y, z] = this.shown, across = x * Math.cos(.5) + z * Math.sin(.5), upright = y + .3 * z;
     return Math.round(Math.min(Math.max(width * 1.06 * upright / across, 240), 620, Math.max(280, innerHeight * .7)));
   }
   draw() {
@@ -163,7 +168,7 @@ class SpaceView {
     this.program.uniforms.fill.value = [...rgbOf(css("--cut")), tension ? 1 : .45];
   }
   render(width, height) {
-    const far = this.far = this.distance(width / height), [, , near] = this.directions;
+    const far = this.distance(width / height), [, , near] = this.directions;
     this.camera.perspective({aspect: width / height, near: far / 100, far: far * 10});
     this.camera.position.set(...near.map(v => far * v));
     this.camera.lookAt([0, 0, 0]);
@@ -176,10 +181,10 @@ class SpaceView {
   }
   /// The plane as the shader takes it, on the side of the eye, and its rim in the box.
   drawCut() {
-    const {axis, share} = this.cut, {position} = this.rim.attributes, plane = SpaceView.uncut.slice(), half = this.box.map(l => l / 2);
+    const {axis, share} = this.cut, {position} = this.rim.attributes, plane = SpaceView.uncut.slice(), half = this.shown.map(l => l / 2);
     position.data.fill(0);
     if (axis !== null) {
-      const place = (share - .5) * this.box[axis], side = this.camera.position[axis] < 0 ? -1 : 1, [u, v] = [0, 1, 2].filter(k => k !== axis);
+      const place = (share - .5) * this.shown[axis], side = this.camera.position[axis] < 0 ? -1 : 1, [u, v] = [0, 1, 2].filter(k => k !== axis);
       plane[axis] = side; plane[3] = side * place;
       [[-1, -1], [1, -1], [1, 1], [-1, 1]].forEach(([a, b], i) => { position.data[3 * i + axis] = place; position.data[3 * i + u] = a * half[u]; position.data[3 * i + v] = b * half[v]; });
     }
@@ -187,14 +192,14 @@ class SpaceView {
     this.plane.value = plane;
   }
   cutControls() {
-    const words = () => this.cut.axis === null ? "" : `${"xyz"[this.cut.axis]} = ${format(this.cut.share * this.box[this.cut.axis], 3)} µm`, where = element("span", {class: "quiet"});
-    const slider = element("input", {type: "range", min: 0, max: 1, step: .005, value: this.cut.share, disabled: "", "aria-label": "Place of the cut", oninput: () => { this.cut.share = Number(slider.value); changed(); }});
-    const changed = () => { slider.disabled = this.cut.axis === null; where.textContent = words(); slider.setAttribute("aria-valuetext", words()); this.draw(); };
+    const words = () => this.cut.axis === null ? "" : `${"xyz"[this.cut.axis]} = ${format(this.cut.share * this.shown[this.cut.axis], 3)} µm`, where = element("span", {class: "quiet"});
+    const slider = element("input", {type: "range", min: 0, max: 1, step: .005, value: this.cut.share, hidden: "", "aria-label": "Place of the cut", oninput: () => { this.cut.share = Number(slider.value); changed(); }});
+    const changed = () => { slider.hidden = this.cut.axis === null; where.textContent = words(); slider.setAttribute("aria-valuetext", words()); this.draw(); };
     return element("div", {class: "controls"}, choice("Cut", [["", "none"], ["0", "across x"], ["1", "across y"], ["2", "across z"]], "", axis => { this.cut.axis = axis === "" ? null : Number(axis); changed(); }), slider, where);
   }
   /// Arrows in the walls that move, which go with them; and one below the box where the fluid is driven along x.
   drawArrows() {
-    const {position} = this.arrowGeometry.attributes, [lx, ly, lz] = this.box, arrows = [], apart = lx / 3, long = Math.min(apart * .55, 2.2 * Math.max(ly, lz) / 3);
+    const {position} = this.arrowGeometry.attributes, [lx, ly, lz] = this.shown, arrows = [], apart = lx / 3, long = Math.min(apart * .6, lz * .8);
     position.data.fill(0);
     wallMotion(this).forEach(({speed, gone}, i) => {
       if (!speed) return;
@@ -220,7 +225,7 @@ class SpaceView {
       context.beginPath(); context.moveTo(...at); context.lineTo(at[0] + long * dx, at[1] + long * dy); context.stroke();
       if (far > .2) context.fillText(name, at[0] + dx * long + 8 * dx / far - 3, at[1] + dy * long + 8 * dy / far + 4);
     });
-    const scale = height / 2 / SpaceView.opening / this.far, bar = barLength(width / scale / 5), words = `${format(bar)} µm`, left = width - 14 - bar * scale, bottom = height - 14;
+    const scale = height / 2 / SpaceView.opening / this.distance(width / height), bar = barLength(width / scale / 5), words = `${format(bar)} µm`, left = width - 14 - bar * scale, bottom = height - 14;
     context.lineWidth = 2; context.lineCap = "butt";
     context.beginPath(); context.moveTo(left, bottom); context.lineTo(left + bar * scale, bottom); context.stroke();
     context.fillText(words, left + bar * scale / 2 - context.measureText(words).width / 2, bottom - 6);

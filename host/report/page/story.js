@@ -59,6 +59,7 @@ function storyStrip(timeline, events) {
   const buttons = events.filter(e => e.kind !== "stage").map(event => element("button", {type: "button", class: event.kind, style: `left:${100 * event.position / last}%`,
     title: event.text, "aria-label": `go to: ${event.text}`, onclick: () => { timeline.stop(); timeline.seek(event.position); }}, element("span", {}, event.text)));
   box.append(...buttons);
+  box.classList.toggle("short", !buttons.length);
   // Words that would lie over each other are left to the pointer.
   new ResizeObserver(() => {
     const ends = [-Infinity, -Infinity];

@@ -42,9 +42,10 @@ function showStudy(study) {
     showFailures(view);
     showPasses(view);
   } else section("Results", element("p", {}, view.points.length ? "The points have been run, but study.json has no quantity of them." : "No point has been run."));
-  if ((study.left_out ?? []).length) section("Points that were left out", table([{title: "Point", value: r => labelWords(r.labels ?? {})}, {title: "Why", key: "why"},
-    {title: "Estimated time", number: true, value: r => seconds(r.estimated_s)}], study.left_out, {stacked: true}));
+  if ((study.left_out ?? []).length) section("Points that were left out", element("details", {}, element("summary", {}, `${study.left_out.length} ${study.left_out.length === 1 ? "point" : "points"}, and why`), table([{title: "Point", value: r => labelWords(r.labels ?? {})}, {title: "Why", key: "why"},
+    {title: "Estimated time", number: true, value: r => seconds(r.estimated_s)}], study.left_out, {stacked: true})));
   showOrigin(study, study.study_file, "Study");
+  footer(programOf(study), "This page shows one study; all that it draws is in it.", study.study_file ? `rouleau study ${study.study_file}` : null, "with the file of the study");
   view.changed();
   return view;
 }

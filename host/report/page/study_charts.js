@@ -36,7 +36,7 @@ function timeContent(view) {
   if (!content.drawn.some(p => p.y > 0)) return null;
   const front = view.front.map(id => view.byId.get(id)).map(p => ({x: place(p), y: view.error(p) * view.factor})).filter(p => p.x !== null);
   return {...content, ...errorAxis(view, content.drawn), title: `${errorTitle(view)}, against ${view.timeTitle}`, front,
-    x: {title: `${view.timeTitle}, s`, values: content.drawn.flatMap(p => [p.low, p.high]).concat(content.failed.map(f => f.x).filter(x => x !== null), front.map(p => p.x))},
+    x: {title: `${view.timeTitle}, s`, values: content.drawn.flatMap(p => [p.low, p.high]).concat(front.map(p => p.x))},
     rings: view.rings};
 }
 

@@ -7,7 +7,9 @@ function showReferences(view) {
   section("References", table([{title: "Quantity", key: "name"}, {title: "Reference", value: r => spelled(r.kind ?? "none")}, {title: "Value", number: true, value: r => withUnit(r.value, r.unit, 6)},
     {title: "Uncertainty", number: true, value: r => typeof r.value === "number" && r.uncertainty === null ? "not given" : withUnit(r.uncertainty, r.unit, 2)},
     {title: "Observed order", number: true, value: r => format(r.order, 3)}, {title: "From", value: r => r.source ?? ""}, {title: "Points", value: r => points(r.points)}, {title: "Remark", value: r => r.why_not ?? ""}], rows, {stacked: true}));
-  const methods = view.quantities.flatMap(q => (q.by_method ?? []).map(row => ({...row, quantity: q.name, unit: q.unit})));
+  const all = view.quantities.flatMap(q => (q.by_method ?? []).map(row => ({...row, quantity: q.name, unit: q.unit}))), methods = all.filter(r => typeof r.limit === "number" || typeof r.order === "number");
+  const without = grouped(all.filter(r => !methods.includes(r)), r => `${r.quantity}: ${r.why_not ?? "no limit"}`);
+  if (without.size) page.append(note(`Without a limit: ${[...without].map(([why, rows]) => `${why} (${rows.length} ${rows.length === 1 ? "method" : "methods"})`).join("; ")}.`));
   if (methods.length) page.append(element("h3", {}, "Limit of each method"), table([{title: "Method", value: r => labelWords(r.method ?? {}) || "all points"}, {title: "Quantity", key: "quantity"},
     {title: "Observed order", key: "order", number: true, value: r => format(r.order, 3)}, {title: "Limit", number: true, value: r => withUnit(r.limit, r.unit, 6), sort: r => r.limit},
     {title: "Uncertainty", number: true, value: r => withUnit(r.uncertainty, r.unit, 2), sort: r => r.uncertainty}, {title: "Remark", value: r => r.why_not ?? ""}], methods, {sortable: true}));
@@ -50,7 +52,8 @@ function showFailures(view) {
   if (failed.length) section("Points that failed", table([{title: "Point", value: r => labelWords(r.labels)}, {title: "End", value: r => statusWords[r.status] ?? r.status, mark: () => "over"},
     {title: "Reason", value: r => r.failure?.reason ?? ""}, {title: "Step", number: true, value: r => r.failure?.step ?? null}, {title: "What happened", value: r => r.failure?.message ?? ""},
     {title: "What to change", value: r => r.failure?.remedy ?? ""}], failed, {stacked: true}));
-  if (undefinedOnes.length) section("Numbers that are not defined", table([{title: "Point", value: r => labelWords(r.labels)}, {title: "Quantity", key: "name"}, {title: "Why", key: "why"}], undefinedOnes, {stacked: true}));
+  const reasons = [...grouped(undefinedOnes, r => JSON.stringify([r.name, r.why])).values()];
+  if (reasons.length) section("Numbers that are not defined", table([{title: "Quantity", value: r => r[0].name}, {title: "Why", value: r => r[0].why}, {title: "Points", value: r => r.length === view.points.length ? "all" : r.length > 4 ? `${r.length} of ${view.points.length}` : r.map(p => labelWords(p.labels)).join("; ")}], reasons, {stacked: true}));
 }
 
 /// The changes of one setting that gain most for the quantity that is shown.

@@ -42,8 +42,7 @@ function showErrorBars(summary) {
   const bars = Object.entries(summary.error_bars || {}).map(([name, bar]) => ({name, ...bar}));
   if (!bars.length) return;
   const runs = summary.error_bar_runs || {}, measured = bars.filter(bar => bar.error !== null), rest = bars.filter(bar => bar.error === null);
-  section("Error bars", table([{title: "Quantity", value: r => spelled(r.name)}, {title: "Value", value: r => format(r.value), number: true},
-    {title: "±", value: r => r.error === null ? "–" : format(r.error, 2), number: true}, {title: "Made of", key: "how"}], [...measured, ...rest], {stacked: true}),
+  section("Error bars", table([{title: "Quantity", value: r => drawnAs(r.name).title}, {title: "Value", value: r => { const {factor} = drawnAs(r.name); return withError(factor * r.value, r.error === null ? null : factor * r.error); }, number: true}, {title: "Error made of", key: "how"}], [...measured, ...rest], {stacked: true}),
     note(runs.missing || `Measured by ${(runs.companions || []).length} runs of the same scene with other numerics, which took ${format(100 * runs.share_of_run, 2)} % of this run's time.`));
 }
 
@@ -120,7 +119,4 @@ function showProvenance(run) {
   if (origin.length) section("Provenance", table([{title: "", value: r => r[0]}, {title: "", value: r => element("code", {}, r[1])}], origin));
 }
 
-function licences() {
-  page.append(element("details", {}, element("summary", {}, "Charts: uPlot 1.6.32, and its licence"),
-    element("pre", {class: "card prose"}, document.getElementById("uplot-licence").textContent.trim())));
-}
+const licences = () => element("details", {}, element("summary", {}, "Charts: uPlot 1.6.32, and its licence"), element("pre", {class: "prose"}, document.getElementById("uplot-licence").textContent.trim()));
