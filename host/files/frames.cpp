@@ -238,12 +238,17 @@ hdf5::File open_frames(const std::filesystem::path& file) {
   return all;
 }
 
-std::array<double, 2> FrameReader::size() const {
-  return {file_.read_attribute("/", "size_m", 0), file_.read_attribute("/", "size_m", 1)};
+std::vector<double> FrameReader::size() const {
+  std::vector<double> size;
+  for (std::size_t axis = 0; axis < periodic().size(); ++axis)
+    size.push_back(file_.read_attribute("/", "size_m", axis));
+  return size;
 }
 
-std::array<double, 3> FrameReader::size_in_space() const {
-  return {size()[0], size()[1], file_.read_attribute("/", "size_m", 2)};
+std::vector<bool> FrameReader::periodic() const {
+  std::vector<bool> periodic{!file_.has_attribute("/", "periodic_x"), file_.read_attribute("/", "periodic_y") != 0};
+  if (file_.has_attribute("/", "periodic_z")) periodic.push_back(file_.read_attribute("/", "periodic_z") != 0);
+  return periodic;
 }
 
 long FrameReader::step(int frame) const {

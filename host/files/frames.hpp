@@ -101,12 +101,8 @@ hdf5::File open_frames(const std::filesystem::path& file);
 class FrameReader {
  public:
   explicit FrameReader(const std::filesystem::path& file) : file_(open_frames(file)) {}
-  [[nodiscard]] std::array<double, 2> size() const;           ///< of the domain, m
-  [[nodiscard]] std::array<double, 3> size_in_space() const;  ///< m, in three dimensions
-  [[nodiscard]] bool periodic_x() const { return !file_.has_attribute("/", "periodic_x"); }
-  [[nodiscard]] bool in_space() const { return file_.has_attribute("/", "periodic_z"); }
-  [[nodiscard]] bool periodic_z() const { return file_.read_attribute("/", "periodic_z") != 0; }
-  [[nodiscard]] bool periodic_y() const { return file_.read_attribute("/", "periodic_y") != 0; }
+  [[nodiscard]] std::vector<double> size() const;    ///< of the domain along each of its axes, m
+  [[nodiscard]] std::vector<bool> periodic() const;  ///< likewise
   [[nodiscard]] WallBorder walls() const { return read_walls(file_); }
   [[nodiscard]] int frames() const { return file_.members("/frames"); }
   /// Of the membranes, as they were written; 0 where the frame has none.

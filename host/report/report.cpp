@@ -23,14 +23,17 @@ using Json = nlohmann::json;
 
 /// The page with what draws in space, where a run is there.
 std::string report_page(Json data) {
-  const auto is_in_space = [](const Json& run) {
-    return run.contains("domain") && run["domain"].contains("periodic_z");
+  std::string_view space;
+  const auto add = [&](const Json& run) {
+    if (run.contains("domain") && run["domain"]["size_um"].size() > 2) space = space_template;
   };
-  const bool in_space =
-      data.contains("runs") ? std::any_of(data["runs"].begin(), data["runs"].end(), is_in_space) : is_in_space(data);
+  if (data.contains("runs"))
+    std::for_each(data["runs"].begin(), data["runs"].end(), add);
+  else
+    add(data);
   constexpr std::string_view mark = "@ROULEAU_SPACE@";
   std::string page(report_template);
-  page.replace(page.find(mark), mark.size(), in_space ? space_template : std::string_view{});
+  page.replace(page.find(mark), mark.size(), space);
   return page_with(page, std::move(data));
 }
 

@@ -229,19 +229,20 @@ void add_instants(const files::StoredTable& series, const std::vector<std::size_
 /// All or none. `stride`: 0: no membranes.
 void add_frames(const files::FrameReader& reader, const std::filesystem::path& frames, const Selection& selection,
                 std::size_t stride, Json& data) {
-  const auto size = reader.size();
-  const bool in_space = reader.in_space();
-  data["domain"] = {{"size_um", {size[0] * micro, size[1] * micro}},
-                    {"periodic_x", reader.periodic_x()},
-                    {"periodic_y", reader.periodic_y()}};
-  if (in_space) {
-    data["domain"]["size_um"].push_back(reader.size_in_space()[2] * micro);
-    data["domain"]["periodic_z"] = reader.periodic_z();
-  }
-  Json cells, walls = wall_data(reader);
-  if (stride > 0) cells = in_space ? surface_data(reader, selection) : outline_data(reader, selection, stride);
+  data["domain"] = {{"size_um", reader.size()}, {"periodic", reader.periodic()}};
+  for (Json& length : data["domain"]["size_um"]) length = length.get<double>() * micro;
+  Json outlines, surfaces, walls = wall_data(reader);
+  if (stride > 0) outlines = outline_data(reader, selection, stride), surfaces = surface_data(reader, selection);
   data["fields"] = field_data(frames, selection);
-  data[in_space ? "surfaces" : "outlines"] = std::move(cells), data["walls"] = std::move(walls);
+  data["outlines"] = std::move(outlines), data["surfaces"] = std::move(surfaces), data["walls"] = std::move(walls);
+}
+
+/// Without the folder, which readers of a page need not know.
+std::string words_of(const Error& error, const std::filesystem::path& directory) {
+  std::string words = error.what();
+  const std::string folder = (directory / "").string();
+  for (auto at = words.find(folder); at != std::string::npos; at = words.find(folder)) words.erase(at, folder.size());
+  return words;
 }
 
 std::string words_without_cells(std::uintmax_t bytes) {
@@ -300,9 +301,7 @@ Json report_data(const std::filesystem::path& directory) {
   std::string note;
   const auto without_animation = [&](const Error& error) {  // the rest of the page is worth having
     reader.reset();
-    std::string words = error.what();
-    const std::string folder = (directory / "").string();
-    for (auto at = words.find(folder); at != std::string::npos; at = words.find(folder)) words.erase(at, folder.size());
+    const std::string words = words_of(error, directory);
     note = "No animation: " + words;
     if (ended) damage.push_back(words);
   };
@@ -321,7 +320,8 @@ Json report_data(const std::filesystem::path& directory) {
                " nodes of membranes, and a page is made of up to " + std::to_string(most_nodes_read) +
                ". frames.h5 has all of them.";
       }
-      if (drawn && !reader->in_space()) nodes = reader->nodes(fullest);  // surfaces are thinned on their own
+      const auto outlines = drawn ? reader->outlines(fullest) : observe::OutlineSnapshot{};
+      if (outlines.triangles.empty()) nodes = outlines.x.size();  // surfaces are thinned on their own
       with_fields = field_outputs(directory / "frames.h5", most_fields);
     }
   } catch (const Error& error) {

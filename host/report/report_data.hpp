@@ -25,7 +25,7 @@ bool has_run(const std::filesystem::path& directory);
 ///             at some shown output, by their numbers `ids`, types and the shown output with which their lines begin;
 ///             without `from` all lines have all outputs; aggregate by output and cell, null or cut off where that is
 ///             not there; beside what has a chart speed_um_per_s, of the centroid
-///   domain    {size_um, periodic_x, periodic_y}, in space with z and periodic_z; absent without frames
+///   domain    {size_um, periodic} along each axis; absent without frames
 ///   outlines  outline_data() of the shown outputs (report_outlines.hpp), or null
 ///   surfaces  surface_data() of them (report_surfaces.hpp) in space, or null
 ///   fields    field_data() of the shown outputs (report_fields.hpp), or null

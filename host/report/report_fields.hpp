@@ -22,8 +22,8 @@ struct ScalarField {
 /// Outputs of a frames.h5 whose fields a report can draw (velocity or vorticity), at most `most`, evenly thinned.
 std::vector<std::size_t> field_outputs(const std::filesystem::path& frames, std::size_t most);
 
-/// {nx, ny, box_um, outputs, quantities, velocity, across, derived} of the shown outputs `selection` that have fields; null
-/// when none has.
+/// {nx, ny, box_um, outputs, quantities, velocity, across, derived} of the shown outputs `selection` that have fields;
+/// null when none has.
 ///   box_um       [x, y, width, height] of what the blocks cover: the domain, or the region that was written
 ///   outputs      positions in `selection`
 ///   quantities   [{name: speed | vorticity, unit, signed, scale, clipped, values: [base64 of nx x ny bytes]}]: byte b

@@ -4,11 +4,15 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <string_view>
 
 namespace rouleau::report {
 
-double quantum_of(double diagonal) { return std::max(1e-9, diagonal / std::numeric_limits<std::int16_t>::max()); }
+double quantum_of(const std::vector<double>& size) {
+  const double squares = std::inner_product(size.begin(), size.end(), size.begin(), 0.0);
+  return std::max(1e-9, std::sqrt(squares) / std::numeric_limits<std::int16_t>::max());
+}
 
 void append_number(std::vector<unsigned char>& bytes, int number) {
   for (int shift = 0; shift < 32; shift += 8)
@@ -108,19 +112,15 @@ void CellLayout::put_into(Json& result) const {
 }
 
 Json outline_data(const files::FrameReader& reader, const std::vector<std::size_t>& selection, std::size_t stride) {
-  const auto size = reader.size();
-  Json result{{"size_um", {size[0] * micro, size[1] * micro}},
-              {"periodic_y", reader.periodic_y()},
-              {"origin_um", Json::array()},
-              {"nodes", Json::array()}};
-  const double quantum = quantum_of(std::hypot(size[0], size[1]));
+  Json result{{"origin_um", Json::array()}, {"nodes", Json::array()}};
+  const double quantum = quantum_of(reader.size());
   result["quantum_um"] = quantum * micro;
   const double scale = tension_scale([&](int output) { return reader.outlines(output); }, selection);
   result["tension"] = {{"scale_N_per_m", scale}, {"values", Json::array()}};
   CellLayout layout;
   for (const std::size_t output : selection) {
     const auto outlines = reader.outlines(static_cast<int>(output));
-    if (!layout.add(outlines, stride)) return nullptr;
+    if (!outlines.triangles.empty() || !layout.add(outlines, stride)) return nullptr;
     add_outlines(result, outlines, stride, quantum);
     result["tension"]["values"].push_back(tension_bytes(outlines, stride, scale));
   }
@@ -150,8 +150,7 @@ nlohmann::json wall_data(const files::FrameReader& reader) {
     for (const double metres : corner) data["corners_um"].push_back(std::round(metres * micro * 1000) / 1000);
   }
   if (walls.triangles.empty()) return data;
-  const auto [x, y, z] = reader.size_in_space();
-  const double quantum = quantum_of(std::hypot(x, y, z));
+  const double quantum = quantum_of(reader.size());
   std::vector<unsigned char> points, triangles;
   for (const auto& point : walls.points) {
     for (const double metres : point) append_place(points, metres, quantum);

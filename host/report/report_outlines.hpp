@@ -14,12 +14,12 @@ namespace rouleau::report {
 /// A report tells lengths in micrometres.
 inline constexpr double micro = 1e6;
 
-/// {size_um, periodic_y, quantum_um, cells, first, there, origin_um, nodes, tension} of the outputs `selection`, one
+/// {quantum_um, cells, first, there, origin_um, nodes, tension} of the outputs `selection`, one
 /// node in `stride` of every cell. cells, first: of all that are there at some output, their numbers and where their
 /// nodes begin if all are; there: of each output, places among them of those that are there, null: all are. nodes[k]
 /// is, for the k-th output, base64 of little-endian int16 x, y of every node that is there, in quanta from its cell's
 /// origin; tension {scale_N_per_m, values} of int8 for each node, the tension of the segment that begins there over the
-/// scale times 127. Null when there are no cells, or when the number of a cell's nodes changes.
+/// scale times 127. Null when there are no cells, or when the number of a cell's nodes changes; also of surfaces.
 nlohmann::json outline_data(const files::FrameReader& reader, const std::vector<std::size_t>& selection,
                             std::size_t stride);
 
@@ -37,8 +37,8 @@ class CellLayout {
   std::vector<std::vector<int>> there_;  ///< cells of each output
 };
 
-/// What places within a domain of this diagonal are multiples of, m.
-double quantum_of(double diagonal);
+/// What places within a domain of this size are multiples of, m.
+double quantum_of(const std::vector<double>& size);
 /// Adds a length as a little-endian int16 of quanta; 0 where it is no number.
 void append_place(std::vector<unsigned char>& bytes, double metres, double quantum);
 /// Adds a number as a little-endian int32.

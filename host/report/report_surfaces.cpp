@@ -81,11 +81,8 @@ Json surface_data(const files::FrameReader& reader, const std::vector<std::size_
     if (here > nodes) nodes = here, fullest = output;
   }
   if (nodes == 0 || reader.outlines(static_cast<int>(fullest)).triangles.empty()) return nullptr;
-  const std::array<double, 3> size = reader.size_in_space();
-  const double quantum = quantum_of(std::hypot(size[0], size[1], size[2]));
-  Json result{{"size_um", {size[0] * micro, size[1] * micro, size[2] * micro}},
-              {"periodic", {reader.periodic_x(), reader.periodic_y(), reader.periodic_z()}},
-              {"quantum_um", quantum * micro},
+  const double quantum = quantum_of(reader.size());
+  Json result{{"quantum_um", quantum * micro},
               {"outputs", Json::array()},
               {"origin_um", Json::array()},
               {"nodes", Json::array()}};

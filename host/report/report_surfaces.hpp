@@ -8,7 +8,7 @@
 
 namespace rouleau::report {
 
-/// {size_um [3], periodic [3], quantum_um, cells, first, there, meshes, mesh, outputs, origin_um, nodes, tension} of
+/// {quantum_um, cells, first, there, meshes, mesh, outputs, origin_um, nodes, tension} of
 /// the outputs `selection`, or of so many of them that the page stays small: `outputs` are places in the selection.
 /// cells, first and there are those of outline_data. meshes: triangles of different cells, 32-bit numbers of nodes from
 /// a cell's first; mesh: which of them each cell has. Nodes of an output are 16-bit multiples of the quantum from their

@@ -85,7 +85,7 @@ class PageOfFour(BrowserCase):
 
     def cell(self, page, number):
         """Point of the screen in the middle of a cell's left lobe, after scrolling there."""
-        return page.run(f"""(() => {{ const a = {ANIMATION}; a.canvas.scrollIntoView({{block: 'center'}}); a.draw(); const box = a.canvas.getBoundingClientRect(), [x, y] = a.centreOf(a.nodes(), {number});
+        return page.run(f"""(() => {{ const a = {ANIMATION}; a.canvas.scrollIntoView({{block: 'center'}}); a.draw(); const box = a.canvas.getBoundingClientRect(), [x, y] = a.centreOf(a.shapes(), {number});
             return [box.left + a.width / 2 + (x - a.middle[0]) * a.scale, box.top + a.height / 2 - (y - a.middle[1]) * a.scale]; }})()""")
 
 
@@ -232,7 +232,7 @@ class The_animation(PageOfFour):
         page.run("[...document.querySelectorAll('label')].find(l => l.textContent === 'Follow').querySelector('input').click()")
         for position in (2, 18):
             page.run(f"timeline.seek({position})")
-            self.assertAlmostEqual(*page.run(f"[{ANIMATION}.middle[0], {ANIMATION}.centreOf({ANIMATION}.nodes(), 3)[0]]"), places=4)
+            self.assertAlmostEqual(*page.run(f"[{ANIMATION}.middle[0], {ANIMATION}.centreOf({ANIMATION}.shapes(), 3)[0]]"), places=4)
 
     def test_colours_cells_in_every_way_and_greys_them_over_a_field(self):
         page = self.four()
@@ -261,9 +261,9 @@ class The_animation(PageOfFour):
             self.assertAlmostEqual(speed / most, tracer / most, delta=0.02)
         u = page.run(f"(() => {{ const a = {ANIMATION}; return a.fields.velocity(a.fields.between(a.between))(2, a.ly * .99); }})()")[0]
         self.assertTrue(0.3 < u / (rate * height / 2) < 1, u)
-        self.assertEqual([round(s) for s in page.run(f"{ANIMATION}.wallSpeeds()")], [round(-rate * height / 2), round(rate * height / 2)])
+        self.assertEqual([round(s) for s in page.run(f"wallMotion({ANIMATION}).map(wall => wall.speed)")], [round(-rate * height / 2), round(rate * height / 2)])
         page.run("timeline.seek(5)")
-        self.assertEqual(page.run(f"{ANIMATION}.wallSpeeds()"), [0, 0])
+        self.assertEqual(page.run(f"wallMotion({ANIMATION}).map(wall => wall.speed)"), [0, 0])
         moving = page.run("timeline.seek(20), " + VIEW)
         page.run("[...document.querySelectorAll('label')].find(l => l.textContent === 'Tracers').querySelector('input').click()")
         self.assertNotEqual(page.run(VIEW), moving)

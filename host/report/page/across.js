@@ -30,21 +30,21 @@ class FlowAcross {
   get between() { return this.fields.between(this.timeline.between(this.run)); }
   draw() {
     const {canvas} = this, fine = printing ? 3 : window.devicePixelRatio || 1, width = this.width = canvas.clientWidth || 340;
-    this.height = this.across ? Math.min(width * .46, 340) + 44 : Math.min(width * .6, 300);
+    this.height = this.across ? Math.min(width * .46, 340) + 60 : Math.min(width * .6, 300);
     canvas.width = Math.round(width * fine); canvas.height = Math.round(this.height * fine); canvas.style.height = `${this.height}px`;
     const context = canvas.getContext("2d");
     context.setTransform(fine, 0, 0, fine, 0, 0);
     this.paint(context);
   }
   paint(context) {
-    const {width, height, between} = this, bottom = height - 44, map = this.across ? this.paintPlane(context, between, {left: 44, bottom, room: Math.min(width * .42, 340)}) : {right: 4, top: 8};
+    const {width, height, between} = this, bottom = height - 44, map = this.across ? this.paintPlane(context, between, {left: 44, bottom, room: Math.min(width * .42, 340)}) : {right: 4, top: 24};
     context.font = "12px system-ui, sans-serif";
     if (!between) { context.fillStyle = css("--quiet"); context.fillText("no flow was written yet", map.right + 20, height / 2); return; }
     this.paintProfile(context, this.profile(between), {left: map.right + 48, right: width - 12, top: map.top, bottom});
   }
   /// The velocities on the plane, z to the right; where its picture ends.
   paintPlane(context, between, {left, bottom, room}) {
-    const {ny, nz, box_um: [y0, z0, wide, deep]} = this.across, scale = Math.min(room / this.lz, (bottom - 8) / this.ly), right = left + this.lz * scale, top = bottom - this.ly * scale;
+    const {ny, nz, box_um: [y0, z0, wide, deep]} = this.across, scale = Math.min(room / this.lz, (bottom - 24) / this.ly), right = left + this.lz * scale, top = bottom - this.ly * scale;
     if (between) {
       const all = this.planeAt(between), colours = palette("speed"), least = Math.min(0, ...all), small = document.createElement("canvas"), inner = small.getContext("2d");
       const image = inner.createImageData(small.width = nz, small.height = ny);
@@ -66,7 +66,7 @@ class FlowAcross {
     for (const {value, text} of upwards.ticks) { context.beginPath(); context.moveTo(left - 4, upwards.at(value)); context.lineTo(left, upwards.at(value)); context.stroke(); context.fillText(text, left - 8 - context.measureText(text).width, upwards.at(value) + 4); }
     context.fillStyle = css("--text");
     centred(title, (left + right) / 2, bottom + 36);
-    context.fillText("y, µm", left - 40, top - 1 < 10 ? 10 : top - 3);
+    context.fillText("y, µm", left - 40, top - 12);
     return upwards;
   }
   paintProfile(context, profile, box) {

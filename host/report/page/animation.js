@@ -49,8 +49,8 @@ class Animation {
     Object.assign(this, {timeline, run, data, view, section, outlines: section ?? (data.outlines && new Outlines(data.outlines)), fields: data.fields && new Fields(data), colours: cellColours(data), stages: stagesOf(data), zoom: 1});
     [this.lx, this.ly] = data.domain.size_um;
     this.centre = [this.lx / 2, this.ly / 2];
-    this.walls = !data.domain.periodic_y;
-    this.open = !data.domain.periodic_x;  // between openings
+    this.walls = !data.domain.periodic[1];
+    this.open = !data.domain.periodic[0];  // between openings
     this.canvas = element("canvas", {class: "view", role: "img", tabindex: 0, "aria-label": this.description()});
     this.tip = element("div", {class: "tip", role: "status", hidden: ""});
     this.bar = element("div", {class: "bar"});

@@ -13,8 +13,8 @@ function differenceWords(r, differences, runs) {
   const titles = runs.map(run => run.summary.title || ""), all = settingsOf(differences);
   if (all.length > 3 && titles.every(Boolean) && new Set(titles).size === titles.length) return titles[r];
   const kinds = ({values}) => new Set(values.map(asText)).size, rows = settingsOf(differences).sort((a, b) => kinds(b) - kinds(a));
-  const simple = rows.filter(({values}) => values.every(v => typeof v !== "object" || v === null)), told = (simple.length ? simple : rows).slice(0, 3);
-  return told.length ? told.map(row => `${settingName(row.pointer)} ${shortened(asText(row.values[r]), 32)}`).join(", ") + (rows.length > told.length ? ` and ${rows.length - told.length} more` : "") : runs[r].directory;
+  const simple = rows.filter(({values}) => values.every(v => typeof v !== "object" || v === null)), named = (simple.length ? simple : rows).slice(0, 3);
+  return named.length ? named.map(row => `${settingName(row.pointer)} ${shortened(asText(row.values[r]), 32)}`).join(", ") + (rows.length > named.length ? ` and ${rows.length - named.length} more` : "") : runs[r].directory;
 }
 function runName(r, {runs, differences}) {
   return element("p", {class: "run-name"}, element("b", {style: `border-color:var(${runTones[r]})`}, runNames[r]), element("strong", {}, differenceWords(r, differences, runs)));
@@ -58,7 +58,7 @@ function showAllResults(timeline, data) {
       const {space, animation, parts} = drawnRun(box, timeline, r, view);
       if (animation) animations.push(animation);
       if (space) spaces.push(space);
-      box.append(...parts.flatMap(part => [...part.children]).slice(0, 1));
+      box.append(...parts.flatMap(part => [...part.children]));
     } else if (!run.shown.note) box.append(note("No animation: there are no cells."));
     box.append(...whyNoAnimation(run), instantLine(timeline, r), ...failureNote(run));
   });

@@ -71,7 +71,7 @@ function resultOf(run) {
   if (cells === 1 && typeof angle === "number") numbers.push({value: `${withError(angle, (bars.angle_rad?.error ?? 0) * 180 / Math.PI)}°`, label: "angle of the long axis at the end", about: "against the flow, counter-clockwise"});
   const turns = (summary.rheology || []).at(-1)?.rotation?.[0];
   if (cells === 1 && turns?.turns >= 1) numbers.push({value: format(Math.abs(turns.tank_treading_rad_per_strain), 3), label: "tank-treading, rad per strain", about: `over ${turns.turns} whole turns of the outline`});
-  const flow = meanOf(summary, "flow_rate_m2_per_s"), speed = meanOf(summary, "mean_velocity_m_per_s"), depth = run.surfaces?.size_um[2] ?? run.domain?.size_um[2];
+  const flow = meanOf(summary, "flow_rate_m2_per_s"), speed = meanOf(summary, "mean_velocity_m_per_s"), depth = run.domain?.size_um[2];
   if (speed) numbers.push({value: speedWords(speed), label: "mean velocity", about: speed.about});
   if (flow && summary.dimensions !== 3) numbers.push({value: `${format(flow.value, 3)} m²/s`, label: "flow rate per depth", about: flow.about});
   if (flow && summary.dimensions === 3 && depth) numbers.push({value: `${format(flow.value * depth * 1e-6, 3)} m³/s`, label: "flow rate", about: flow.about});

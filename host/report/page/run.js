@@ -74,14 +74,18 @@ function showResults(timeline, run) {
 /// Draws a run into `card`, {space, animation, parts}: in space its box there and, as parts for elsewhere, a section and the flow across x.
 function drawnRun(card, timeline, r, view) {
   const run = timeline.runs[r];
-  if (!isInSpace(run)) return {space: null, animation: new Animation(card, timeline, r, view), parts: []};
+  const flowCard = () => { const flow = element("div", {class: "card"}); timeline.across = new FlowAcross(flow, timeline, r); return flow; };
+  if (!isInSpace(run)) {
+    const hasProfile = run.fields?.velocity && !run.walls && drivenAlong(run);
+    return {space: null, animation: new Animation(card, timeline, r, view), parts: hasProfile ? [element("div", {class: "pair"}, flowCard())] : []};
+  }
   const surfaces = new Surfaces(run.surfaces ?? noSurfaces), section = new Section(run, surfaces), box = element("div", {class: "card"}), parts = [];
   const space = new SpaceView(card, timeline, r, view, surfaces), name = run.walls || run.fields ? "Section and flow" : "Section";
   box.append(element("div", {class: "chart-head"}, element("h3", {}, name)));
   // Of plasma in a box shorter than it is high a section shows nothing that its profile does not.
   const animation = run.fields?.across && !surfaces.count && space.times > 1 ? null : new Animation(box, timeline, r, view, section);
   if (animation) { box.append(sectionControls(section, animation)); parts.push(box); }
-  if (run.fields?.across) { const flow = element("div", {class: "card"}); timeline.across = new FlowAcross(flow, timeline, r); parts.push(flow); }
+  if (run.fields?.across) parts.push(flowCard());
   return {space: space.renderer ? space : null, animation, parts: [element("div", {class: parts.length > 1 ? "pair" : ""}, ...parts)]};
 }
 /// Where the section lies.

@@ -17,10 +17,10 @@ class SpaceView {
   constructor(parent, timeline, run, view, surfaces) {
     const data = timeline.runs[run], {domain} = data;
     Object.assign(this, {timeline, run, data, view, surfaces, places: surfaces.placesOf(data), colours: cellColours(data), fields: data.fields && new Fields(data), box: domain.size_um, ly: domain.size_um[1], stages: stagesOf(data),
-      periodic: [domain.periodic_x, domain.periodic_y, domain.periodic_z], cut: {axis: null, share: .5}});
+      periodic: domain.periodic, cut: {axis: null, share: .5}});
     // A periodic box that is shorter than it is high is shown as often as makes sense of it.
     const [x, y, z] = this.box, high = Math.max(y, z);
-    this.times = domain.periodic_x && x < .75 * high ? Math.min(24, Math.ceil(1.25 * high / x)) : 1;
+    this.times = domain.periodic[0] && x < .75 * high ? Math.min(24, Math.ceil(1.25 * high / x)) : 1;
     this.shown = [this.times * x, y, z];
     view.camera ??= {...SpaceView.start};
     this.canvas = element("canvas", {class: "view space", role: "img", tabindex: 0, "aria-label": `${this.words()} in a box of ${this.box.map(l => format(l, 3)).join(" by ")} µm, ${this.times > 1 ? `${this.times} periods of it, ` : ""}seen in perspective. Arrow keys turn it, plus and minus zoom.`});
@@ -234,6 +234,7 @@ class SpaceView {
   picture(width, height) {
     const {renderer} = this, copy = Object.assign(document.createElement("canvas"), {width, height}), {dpr} = renderer;
     renderer.dpr = 1; renderer.setSize(width, height);
+    this.paintCells();
     this.render(width, height);
     copy.getContext("2d").drawImage(this.canvas, 0, 0);
     renderer.dpr = dpr; this.width = null;

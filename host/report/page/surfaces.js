@@ -85,7 +85,7 @@ function cutLines(places, triangles, axis, place, share, range = [0, triangles.l
 /// What one plane z = const cuts of a run's surfaces, where the animation of a run in the plane has outlines.
 class Section {
   constructor(run, surfaces) {
-    Object.assign(this, {surfaces, walls: run.walls, z: run.domain.size_um[2] / 2, length: run.domain.size_um[2], periodic: run.domain.periodic_z, places: surfaces.placesOf(run), count: run.cells?.types.length ?? surfaces.count});
+    Object.assign(this, {surfaces, walls: run.walls, z: run.domain.size_um[2] / 2, length: run.domain.size_um[2], periodic: run.domain.periodic[2], places: surfaces.placesOf(run), count: run.cells?.types.length ?? surfaces.count});
   }
   /// For each cell of the page its lines; none of a cell that the plane does not meet.
   shapes(instant, withTension) {

@@ -12,7 +12,7 @@ void fuzz_target(std::string_view bytes) {
   fuzz::may_refuse([&] {
     const files::FrameReader reader(file.path());
     static_cast<void>(reader.size());
-    static_cast<void>(reader.periodic_y());
+    static_cast<void>(reader.periodic());
     const int frames = reader.frames();
     for (int frame = 0; frame < std::min(frames, 3); ++frame) {
       const auto outlines = reader.outlines(frame);

@@ -71,8 +71,9 @@ TEST_CASE("frames.h5 holds the outlines as given, with units") {
   write_run(folder.path());
   const FrameReader reader(folder.path() / "frames.h5");
   REQUIRE(reader.frames() == 2);
+  CHECK(reader.size().size() == 2);
   CHECK(reader.size()[0] == 20e-6);
-  CHECK_FALSE(reader.periodic_y());
+  CHECK_FALSE(reader.periodic()[1]);
   CHECK(reader.step(1) == 5);
   for (int frame = 0; frame < 2; ++frame) {
     const auto given = small_outlines(frame == 0 ? 32 : 40);
