@@ -74,7 +74,7 @@ class FlowAcross {
     context.strokeStyle = css("--line"); context.lineWidth = 1;
     context.beginPath(); context.rect(left, top, right - left, bottom - top); context.stroke();
     context.beginPath(); context.moveTo(across.at(0), top); context.lineTo(across.at(0), bottom); context.stroke();
-    const upwards = this.paintAxes(context, box, across, `velocity along x, ${this.unit}`), places = this.places(profile.length);
+    const upwards = this.paintAxes(context, box, across, `velocity, ${this.unit}`), places = this.places(profile.length);
     context.strokeStyle = css("--c0"); context.lineWidth = 2;
     context.beginPath();
     profile.forEach((u, i) => context.lineTo(across.at(u * this.factor), upwards.at(places[i])));

@@ -170,7 +170,7 @@ class Animation {
   // ---- drawing
   draw() {
     const {canvas, lx, ly} = this, fine = printing ? 3 : window.devicePixelRatio || 1, margin = {x: 7, y: this.walls ? 20 : 7};
-    const width = this.width = canvas.clientWidth || 340, most = this.section ? Math.min(420, innerHeight * .6) : Math.max(240, innerHeight * .68);
+    const width = this.width = canvas.clientWidth || 340, most = Math.max(240, this.section ? Math.min(420, innerHeight * .6) : innerHeight * .68);
     this.whole = Math.min((width - 2 * margin.x) / lx, (most - 2 * margin.y) / ly);
     this.height = ly * this.whole + 2 * margin.y;
     canvas.width = Math.round(width * fine); canvas.height = Math.round(this.height * fine);

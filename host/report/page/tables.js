@@ -105,7 +105,7 @@ function showHistory(run, summary) {
     && Math.abs(means[name].mean) >= 1e-9 * largest(name);  // below is rounding, of walls at rest for example
   const means = [...stages].reverse().flatMap(stage => Object.entries(stage.means || {}).filter(([, v]) => v && typeof v === "object" && typeof v.mean === "number")
     .filter(([name]) => isResult(stage.means, name)).map(([name, {mean, error, deviation, trend}]) => {
-      const {title, factor} = drawnAs(name), scaled = v => typeof v === "number" ? format(factor * v, 2) : "–";
+      const {title, factor} = drawnAs(name), scaled = v => typeof v !== "number" ? "–" : Math.abs(v) < 1e-12 * Math.abs(mean) ? "0" : format(factor * v, 2);
       return {title, trend, stage: stage.stage, mean: withError(factor * mean, null, factor * (error ?? 0)), error: scaled(error), deviation: scaled(deviation)};
     }));
   if (means.length) section("Means", table([{title: "Quantity", key: "title"}, {title: "Stage", key: "stage"}, {title: "Mean", key: "mean", number: true}, {title: "Standard error", key: "error", number: true}, {title: "Standard deviation", key: "deviation", number: true},
