@@ -786,6 +786,17 @@ class Two_runs(PageCase):
         page.wait("charts.every(c => c.u.scales.x.max < 1.1)")
         self.assert_sound(page)
 
+    def test_are_compared_by_what_is_more_than_rounding_and_errors(self):
+        page = self.open(folder / "both.html")
+        self.assertEqual(page.run("[...document.querySelectorAll('summary')].filter(s => s.textContent === 'Numerics, cost and machine').length"), 1)
+        rows = page.run("""(() => {
+            const run = (viscosity, noise, error) => ({summary: {error_bars: {relative_viscosity: {error}}, rheology: [{stage: "rest", means: {}}, {stage: "shear", means: {}}]}}), mean = (name, ...values) => ({name: `mean/${name}`, values, differs: true});
+            showOutcome({runs: [run(0, 0, .02), run(0, 0, .01)], differences: {outcome: [mean("shear/relative_viscosity", 1.5, 1.52), mean("shear/wall_stress_lower_Pa", .1, .2), mean("rest/wall_stress_lower_Pa", 1e-15, 3e-15),
+                mean("shear/particle_stress_Pa", 1e-9, 2), {name: "steps", values: [10, 20], differs: true}]}});
+            return [...document.querySelectorAll("#outcome")].at(-1).nextElementSibling.innerText.split("\\n").map(line => line.split("\\t")); })()""")
+        self.assertEqual(rows[1:], [["Mean, shear, relative viscosity", "1.50 ± 0.02", "1.520 ± 0.010", "within the errors"], ["Mean, shear, wall stress lower, Pa", "0.1", "0.2", "100 %"],
+                                    ["Mean, shear, particle stress, Pa", "≈ 0", "2", ""]])
+
     def test_that_are_the_same_do_not_differ(self):
         rouleau("report", "--compare", folder / "a", folder / "a", "--out", folder / "same.html")
         page = self.open(folder / "same.html")

@@ -84,7 +84,7 @@ function runTable({runs, differences}) {
   return table([{title: "Run", value: ({r}) => element("span", {class: "run-name"}, element("b", {style: `border-color:var(${runTones[r]})`}, runNames[r])), sort: ({r}) => r},
     ...settings.map(row => ({title: settingName(row.pointer), value: ({r}) => shortened(asText(row.values[r])), sort: ({r}) => leading(row.values[r])})),
     {title: "status", value: ({run}) => run.summary.status}, ...labels.map(label => ({title: label, value: ({r}) => found(r, label) ?? "–", sort: ({r}) => leading(found(r, label)), number: true})),
-    {title: "took", value: ({run}) => seconds(run.summary.wall_s), sort: ({run}) => run.summary.wall_s, number: true}], rows, {sortable: true, fitting: true});
+    {title: "took", value: ({run}) => seconds(run.summary.wall_s), sort: ({run}) => run.summary.wall_s, number: true}], rows, {sortable: true, fitting: true, stacked: true});
 }
 
 function showDifferences(data) {
@@ -107,9 +107,15 @@ function showOutcome({runs, differences: {outcome}}) {
   const isRounding = row => sizes(row).length > 0 && Math.max(...sizes(row)) < 1e-9 * scales.get(quantity(row.name)), isLayer = ({name}) => /cell_free/.test(name) && (/empty/.test(name) || !runs.every(run => layersAreThere(run.summary.rheology?.at(-1)?.means)));
   const real = differing.filter(row => !isRounding(row) && !isLayer(row)), isNumerics = ({name}) => /^conservation|mach|simulated$/.test(name) || !/^(mean|stretch|dimensionless|failure|status|aggregates)/.test(name);
   const spreadOf = (r, name) => { const [, stage, of] = name.match(/^mean\/(.*)\/([^/]*)$/) ?? []; return of ? runs[r].summary.rheology?.find(s => s.stage === stage)?.means?.[of]?.error ?? null : null; };
-  const value = (row, r) => { const v = row.values[r], {factor} = drawnAs(row.name); return typeof v !== "number" ? asText(v) : isNothing(v, row) && v ? "≈ 0" : row.name.startsWith("mean/") ? withError(factor * v, null, factor * (spreadOf(r, row.name) ?? 0)) : format(factor * v, 4); };
+  const value = (row, r) => { const v = row.values[r], {factor} = drawnAs(row.name); return typeof v !== "number" ? asText(v) : isNothing(v, row) && v ? "≈ 0" : row.name.startsWith("mean/") ? withError(factor * v, factor * errorOf(r, row.name), factor * (spreadOf(r, row.name) ?? 0)) : format(factor * v, 4); };
   const isNothing = (v, row) => Math.abs(v) < 1e-9 * scales.get(quantity(row.name));
-  const ratio = row => { const [a, b] = row.values; return typeof a === "number" && typeof b === "number" && !isNothing(a, row) && a !== 0 ? `${format(100 * (b - a) / Math.abs(a), 3)} %` : ""; };
+  // What was measured with an error says whether a difference is one.
+  const errorOf = (r, name) => { const [, stage, of] = name.match(/^mean\/(.*)\/([^/]*)$/) ?? []; return of && stage === runs[r].summary.rheology?.at(-1)?.stage ? runs[r].summary.error_bars?.[of]?.error ?? 0 : 0; };
+  const ratio = row => {
+    const [a, b] = row.values;
+    if (typeof a !== "number" || typeof b !== "number" || Math.abs(a) <= 1e-6 * Math.abs(b) || isNothing(a, row)) return "";
+    return Math.abs(b - a) <= errorOf(0, row.name) + errorOf(1, row.name) ? "within the errors" : `${format(100 * (b - a) / Math.abs(a), 3)} %`;
+  };
   const rows = list => table([{title: "What", value: r => drawnAs(r.name).title.replace(/\//g, ", ")}, ...runs.map((_, r) => ({title: runNames[r], number: true, value: row => value(row, r)})),
     ...(runs.length === 2 ? [{title: "B against A", number: true, value: ratio}] : [])], list, {stacked: true});
   const order = ({name}) => ["mean", "stretch", "aggregates", "dimensionless"].findIndex(group => name.startsWith(group)), physics = real.filter(row => !isNumerics(row)).sort((a, b) => (order(a) + 5) % 5 - (order(b) + 5) % 5), numerics = real.filter(isNumerics);

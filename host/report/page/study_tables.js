@@ -4,9 +4,11 @@ const withUnit = (value, unit, digits = 5) => typeof value === "number" ? `${for
 function showReferences(view) {
   const points = ids => (ids ?? []).map(id => view.byId.get(id)).filter(Boolean).map(p => labelWords(p.labels)).join("; ");
   const rows = view.quantities.map(q => ({name: q.name, unit: q.unit, ...(q.reference ?? {}), disagreement: q.disagreement}));
-  section("References", table([{title: "Quantity", key: "name"}, {title: "Reference", value: r => spelled(r.kind ?? "none")}, {title: "Value", number: true, value: r => withUnit(r.value, r.unit, 6)},
+  const columns = [{title: "Quantity", key: "name"}, {title: "Reference", value: r => spelled(r.kind ?? "none")}, {title: "Value", number: true, value: r => withUnit(r.value, r.unit, 6)},
     {title: "Uncertainty", number: true, value: r => typeof r.value === "number" && r.uncertainty === null ? "not given" : withUnit(r.uncertainty, r.unit, 2)},
-    {title: "Observed order", number: true, value: r => format(r.order, 3)}, {title: "From", value: r => r.source ?? ""}, {title: "Points", value: r => points(r.points)}, {title: "Remark", value: r => r.why_not ?? ""}], rows, {stacked: true}));
+    {title: "Observed order", number: true, value: r => format(r.order, 3)}, {title: "From", value: r => r.source ?? ""}, {title: "Points", value: r => points(r.points)}, {title: "Remark", value: r => r.why_not ?? ""}];
+  const says = column => rows.some(r => !["", "–"].includes(String(column.value ? column.value(r) : r[column.key] ?? "")));
+  section("References", table(columns.filter(says), rows, {stacked: true}));
   const all = view.quantities.flatMap(q => (q.by_method ?? []).map(row => ({...row, quantity: q.name, unit: q.unit}))), methods = all.filter(r => typeof r.limit === "number" || typeof r.order === "number");
   const without = grouped(all.filter(r => !methods.includes(r)), r => `${r.quantity}: ${r.why_not ?? "no limit"}`);
   if (without.size) page.append(note(`Without a limit: ${[...without].map(([why, rows]) => `${why} (${rows.length} ${rows.length === 1 ? "method" : "methods"})`).join("; ")}.`));
