@@ -7,6 +7,7 @@ import itertools
 import json
 import math
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -379,6 +380,20 @@ class What_is_saved(PageOfFour):
         time = page.run("data.time_s[3]")
         self.assertEqual(self.four(part=f"#time={time}").run("timeline.position"), 3)
         self.assertEqual(self.four(part="#cells").run("timeline.position"), 14)
+
+
+    def test_has_a_figure_of_which_nothing_lies_off_its_page(self):
+        page = self.four()
+        page.run("timeline.seek(16)")
+        pdf = bytes(page.run("[...figurePdf(timeline.animation)]"))
+        width, height = map(float, re.search(rb"MediaBox\[0 0 ([\d.]+) ([\d.]+)\]", pdf).groups())
+        places = [(float(x), float(y)) for x, y in re.findall(rb"(-?[\d.]+) (-?[\d.]+) [ml]\b", pdf)]
+        self.assertGreater(len(places), 200)  # the outlines
+        self.assertTrue(all(0 <= y <= height for _, y in places))
+        drawn = [y for _, y in places if 0 < y < height]  # all but the ground
+        low, high = min(drawn), max(drawn)  # the walls, with room below for the caption
+        self.assertGreater(low, height - high)
+        self.assertIn(b"Computed with Rouleau", pdf)
 
 
 class Tables(PageOfFour):

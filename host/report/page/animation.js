@@ -69,6 +69,7 @@ class Animation {
   showBars() { this.cellBar.replaceChildren(...(this.colours[this.view.colour] ?? this.colours.grey)?.bar() ?? []); }
 
   // ---- what is where
+  get image() { return this.canvas; }
   stageAt(output) { return this.stages.findLast(stage => stage.from <= output); }
   get between() { return this.timeline.between(this.run); }
   shapes(withTension = false) { return this.outlines.shapes(this.between, withTension); }

@@ -9,7 +9,7 @@ class PdfContext extends SvgContext {
     super(width, height, "#fff");
     Object.assign(this, {parts: [], images: [], alphas: [], measure: document.createElement("canvas").getContext("2d")});
   }
-  at(x, y) { const [px, py] = super.at(x, y); return [px, Number((this.height - py).toFixed(2))]; }
+  at(x, y) { const [px, py] = this.moved(x, y); return [px, Number((this.height - py).toFixed(2))]; }
   measureText(words) { this.measure.font = `${this.size}px Helvetica, Arial, sans-serif`; return this.measure.measureText(words); }
   get size() { return parseFloat(this.font.match(/[\d.]+px/) ?? "12"); }
   moveTo(x, y) { this.path.push(`${this.at(x, y).join(" ")} m`); }

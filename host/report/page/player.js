@@ -79,7 +79,7 @@ function onGround(canvas, head = "") {
 }
 const savePng = (canvas, name, head) => onGround(canvas, head).toBlob(blob => download(name, blob), "image/png");
 function savePicture(animations) {
-  for (const a of animations) savePng(a.canvas, fileName(`${animations.length > 1 ? runNames[a.run] : ""} ${a.timeline.words}`, "png"));
+  for (const a of animations) savePng(a.image, fileName(`${animations.length > 1 ? runNames[a.run] : ""} ${a.timeline.words}`, "png"));
 }
 function svgOf(animation) {
   const context = new SvgContext(animation.width, animation.height, css("--card"));
@@ -103,7 +103,7 @@ async function recordVideo(timeline, animation, {from = 0, to = timeline.count -
     context.fillStyle = css("--card"); context.fillRect(0, 0, film.width, film.height);
     context.fillStyle = css("--text"); context.font = `${14 * fine}px system-ui, sans-serif`;
     context.fillText(`${animation.stageAt(timeline.output(animation.run)).name}, ${timeline.words}`, 10 * fine, 19 * fine);
-    context.drawImage(animation.canvas, 0, head * fine);
+    context.drawImage(animation.image, 0, head * fine);
   };
   timeline.stop();
   timeline.seek(from);

@@ -68,10 +68,12 @@ class SpaceView {
     if (this.surfaces.count) this.repeat(this.geometry, this.program);
     const flat = () => new Program(gl, {cullFace: false, uniforms: {plane: this.plane, tone: {value: [0, 0, 0]}}, vertex: "attribute vec3 position; uniform mat4 modelViewMatrix, projectionMatrix; varying vec3 p; void main() { p = position; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
       fragment: "precision highp float; uniform vec4 plane; uniform vec3 tone; varying vec3 p; void main() { if (dot(plane.xyz, p) > plane.w) discard; gl_FragColor = vec4(tone, 1.0); }"});
-    this.frameProgram = flat(); this.arrowProgram = flat();
-    this.frameProgram.uniforms.plane = {value: SpaceView.uncut};
+    this.frameProgram = flat(); this.arrowProgram = flat(); this.driveProgram = flat();
+    for (const program of [this.frameProgram, this.driveProgram]) program.uniforms.plane = {value: SpaceView.uncut};
     this.rim = new Geometry(gl, {position: dynamic(3, 4)});
     this.arrowGeometry = new Geometry(gl, {position: dynamic(3, 9 * SpaceView.arrows)});
+    const driven = drivenAlong(this.data), [lx, ly, lz] = this.shown, flow = Math.min(lx / 3, ly / 2);  // an arrow below the box
+    if (driven) add(new Geometry(gl, {position: {size: 3, data: Float32Array.from(arrowTriangles([-driven * flow / 2, -ly / 2 * 1.12, lz / 2], [driven * flow, 0, 0], [0, 1, 0]))}}), this.driveProgram);
     add(this.rim, this.frameProgram, gl.LINE_LOOP);
     add(new Geometry(gl, {position: {size: 3, data: this.edges()}}), this.frameProgram, gl.LINES);
     this.glassPrograms = [];
@@ -175,7 +177,7 @@ class SpaceView {
     this.drawCut();
     this.drawArrows();
     this.frameProgram.uniforms.tone.value = rgbOf(css("--quiet"));
-    this.arrowProgram.uniforms.tone.value = rgbOf(css("--text"));
+    this.arrowProgram.uniforms.tone.value = this.driveProgram.uniforms.tone.value = rgbOf(css("--text"));
     for (const program of this.glassPrograms) program.uniforms.tone.value = rgbOf(css("--quiet"));
     this.renderer.render({scene: this.scene, camera: this.camera});
   }
@@ -197,7 +199,7 @@ class SpaceView {
     const changed = () => { slider.hidden = this.cut.axis === null; where.textContent = words(); slider.setAttribute("aria-valuetext", words()); this.draw(); };
     return element("div", {class: "controls"}, choice("Cut", [["", "none"], ["0", "across x"], ["1", "across y"], ["2", "across z"]], "", axis => { this.cut.axis = axis === "" ? null : Number(axis); changed(); }), slider, where);
   }
-  /// Arrows in the walls that move, which go with them; and one below the box where the fluid is driven along x.
+  /// Arrows in the walls that move, which go with them.
   drawArrows() {
     const {position} = this.arrowGeometry.attributes, [lx, ly, lz] = this.shown, arrows = [], apart = lx / 3, long = Math.min(apart * .6, lz * .8);
     position.data.fill(0);
@@ -210,8 +212,6 @@ class SpaceView {
         arrows.push(arrowTriangles([middle - lx / 2 - sign * long / 2, (i ? 1 : -1) * ly / 2, z * lz], [sign * long, 0, 0], [0, 0, 1]));
       }
     });
-    const driven = drivenAlong(this.data);
-    if (driven) { const flow = Math.min(lx / 3, ly / 2); arrows.push(arrowTriangles([-driven * flow / 2, -ly / 2 * 1.12, lz / 2], [driven * flow, 0, 0], [0, 1, 0])); }
     arrows.slice(0, SpaceView.arrows).forEach((triangles, i) => position.data.set(triangles, 27 * i));
     position.needsUpdate = true;
   }
@@ -229,6 +229,13 @@ class SpaceView {
     context.lineWidth = 2; context.lineCap = "butt";
     context.beginPath(); context.moveTo(left, bottom); context.lineTo(left + bar * scale, bottom); context.stroke();
     context.fillText(words, left + bar * scale / 2 - context.measureText(words).width / 2, bottom - 6);
+  }
+  /// What is seen, the signs included: a canvas.
+  get image() {
+    const image = this.seen ??= document.createElement("canvas"), {width, height} = this.canvas, context = image.getContext("2d");
+    image.width = width; image.height = height;
+    for (const layer of [this.canvas, this.over]) context.drawImage(layer, 0, 0, width, height);
+    return image;
   }
   /// The picture in so many pixels, for a figure: a canvas.
   picture(width, height) {

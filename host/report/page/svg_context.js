@@ -6,11 +6,14 @@ class SvgContext {
       globalAlpha: 1, lineWidth: 1, lineCap: "butt", fillStyle: "#000", strokeStyle: "#000", font: "12px sans-serif", dash: []});
   }
   text() { return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${this.width} ${this.height}" width="${this.width}" height="${this.height}">${this.parts.join("\n")}</svg>\n`; }
-  at(x, y) { const [a, b, c, d, e, f] = this.state.matrix; return [a * x + c * y + e, b * x + d * y + f].map(v => Number(v.toFixed(2))); }
+  /// In pixels from the left and from above.
+  moved(x, y) { const [a, b, c, d, e, f] = this.state.matrix; return [a * x + c * y + e, b * x + d * y + f].map(v => Number(v.toFixed(2))); }
+  /// As the file has it.
+  at(x, y) { return this.moved(x, y); }
   clearRect() {}
   save() { this.kept.push({matrix: [...this.state.matrix], clip: this.state.clip}); }
   restore() { this.state = this.kept.pop(); }
-  translate(x, y) { const [a, b, c, d] = this.state.matrix, [e, f] = this.at(x, y); this.state.matrix = [a, b, c, d, e, f]; }
+  translate(x, y) { const [a, b, c, d] = this.state.matrix, [e, f] = this.moved(x, y); this.state.matrix = [a, b, c, d, e, f]; }
   scale(x, y) { const m = this.state.matrix; this.state.matrix = [m[0] * x, m[1] * x, m[2] * y, m[3] * y, m[4], m[5]]; }
   setLineDash(dash) { this.dash = dash; }
   measureText(words) { return {width: 6.6 * words.length}; }
