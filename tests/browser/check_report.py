@@ -567,6 +567,22 @@ class The_page_of_a_run_in_three_dimensions(PageCase):
         page.run(change % ("select[aria-label='Cut']", "", "change"))
         self.assertEqual(page.run(self.PIXELS), whole)
 
+    def test_marks_where_a_run_diverged(self):
+        begin, rest = (self.directory / "report.html").read_text().split('<script type="application/json" id="data">', 1)
+        data, end = rest.split("</script>", 1)
+        data = json.loads(data)
+        data["summary"].update(status="diverged", failure={"reason": "mach", "step": data["step"][-1], "strain": 0.4, "time_s": 1, "value": 1, "limit": 0.3,
+                               "place_m": [length / 2e6 for length in data["domain"]["size_um"]], "cell": None})
+        (self.directory / "diverged.html").write_text(f'{begin}<script type="application/json" id="data">{json.dumps(data)}</script>{end}')
+        page = self.open(self.directory / "diverged.html")
+        page.run(Every_page_on_every_screen.DRAWN)
+        ring = """(() => { const c = document.querySelector("canvas.over"), fine = c.width / c.clientWidth; return [...c.getContext("2d").getImageData(Math.round(c.width / 2 + 11 * fine), c.height >> 1, 1, 1).data]; })()"""
+        self.assertEqual(page.run(f"{ring}.map((v, i) => v - [...rgbOf(css('--bad')).map(v => 255 * v), 255][i])"), [0, 0, 0, 0])
+        self.assertIn("the red ring marks the place", page.run("document.querySelector('main').textContent"))
+        self.assert_sound(page)
+        page.run("timeline.seek(0)")
+        self.assertEqual(page.run(ring), [0, 0, 0, 0])
+
     def test_fills_what_is_cut(self):
         for scheme in ("light", "dark"):
             page = self.open(self.directory / "report.html", scheme=scheme, part="#strain=0.4")

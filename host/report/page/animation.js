@@ -348,7 +348,7 @@ class Animation {
 /// What the mark in a diverged run's animation means.
 function failureNote(run) {
   const failure = (run.summary || {}).failure;
-  if (!failure?.place_m || failure.place_m.length > 2 || !run.step.length || !isDrawn(run)) return [];
+  if (!failure?.place_m || !run.step.length || !isDrawn(run)) return [];
   const last = run.step.at(-1), cell = run.outlines && typeof failure.cell === "number" ? ", the red outline the cell" : "";
   return [note(`At the last instant the red ring marks the place where the run diverged${cell}` + (last < failure.step ? `: at step ${format(failure.step)}, while what is drawn is of step ${format(last)}, the last written.` : "."))];
 }

@@ -225,10 +225,21 @@ class SpaceView {
       context.beginPath(); context.moveTo(...at); context.lineTo(at[0] + long * dx, at[1] + long * dy); context.stroke();
       if (far > .2) context.fillText(name, at[0] + dx * long + 8 * dx / far - 3, at[1] + dy * long + 8 * dy / far + 4);
     });
+    if (this.failed()) this.paintFailure(context, width, height);
     const scale = height / 2 / SpaceView.opening / this.distance(width / height), bar = barLength(width / scale / 5), words = `${format(bar)} µm`, left = width - 14 - bar * scale, bottom = height - 14;
     context.lineWidth = 2; context.lineCap = "butt";
     context.beginPath(); context.moveTo(left, bottom); context.lineTo(left + bar * scale, bottom); context.stroke();
     context.fillText(words, left + bar * scale / 2 - context.measureText(words).width / 2, bottom - 6);
+  }
+  /// Whether a diverged run shows its last output: then a ring marks the place where it went bad.
+  failed() { const {data} = this, place = data.summary?.failure?.place_m ?? []; return this.timeline.output(this.run) === data.step.length - 1 && place.length === 3 && place.every(v => v !== null); }
+  paintFailure(context, width, height) {
+    const place = this.data.summary.failure.place_m.map((v, k) => (this.periodic[k] ? 1e6 * v - this.box[k] * Math.floor(1e6 * v / this.box[k]) : 1e6 * v) - this.box[k] / 2);
+    const [x, y, near] = this.directions.map(axis => axis.reduce((sum, v, k) => sum + v * place[k], 0)), scale = height / 2 / SpaceView.opening / (this.distance(width / height) - near);
+    for (const [colour, line] of [["--card", 6], ["--bad", 2.5]]) {
+      context.strokeStyle = css(colour); context.lineWidth = line;
+      context.beginPath(); context.arc(width / 2 + x * scale, height / 2 - y * scale, 11, 0, 2 * Math.PI); context.stroke();
+    }
   }
   /// What is seen, the signs included: a canvas.
   get image() {
