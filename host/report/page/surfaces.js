@@ -65,12 +65,11 @@ function cutLines(places, triangles, axis, place, share, range = [0, triangles.l
     return key;
   };
   for (let t = range[0]; t < range[1]; t += 3) {
-    const corners = [triangles[t], triangles[t + 1], triangles[t + 2]], up = corners.map(above), alone = up.findIndex(side => up.filter(s => s === side).length === 1);
-    if (alone < 0) continue;
-    const [a, b, c] = [corners[alone], corners[(alone + 1) % 3], corners[(alone + 2) % 3]], ends = [cross(a, b), cross(a, c)];
+    const first = above(triangles[t]), second = above(triangles[t + 1]), third = above(triangles[t + 2]);
+    if (first === second && second === third) continue;
+    const alone = second === third ? 0 : first === third ? 1 : 2, a = triangles[t + alone], one = cross(a, triangles[t + (alone + 1) % 3]), other = cross(a, triangles[t + (alone + 2) % 3]);
     // Along every line in one sense: above at the left.
-    const [from, to] = up[alone] ? ends : ends.reverse();
-    next.set(from, to);
+    if (above(a)) next.set(one, other); else next.set(other, one);
   }
   const lines = [], ends = new Set(next.values()), starts = [...[...next.keys()].filter(key => !ends.has(key)), ...next.keys()];
   for (const start of starts) {
