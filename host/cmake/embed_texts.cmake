@@ -69,7 +69,8 @@ namespace rouleau::@namespace@ {
 endfunction()
 
 # rouleau_assemble_page(RESULT TEMPLATE) writes RESULT: TEMPLATE with every line "@include FILE@" replaced by that file,
-# whose path counts from the template's folder.
+# whose path counts from the template's folder. Comments of our scripts that have a line to themselves stay behind: every page would
+# carry them.
 function(rouleau_assemble_page result template)
   get_filename_component(folder "${template}" DIRECTORY)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${template}")
@@ -79,6 +80,9 @@ function(rouleau_assemble_page result template)
     string(REGEX REPLACE "@include ([^@]+)@" "\\1" piece "${include}")
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${folder}/${piece}")
     file(READ "${folder}/${piece}" text)
+    if(piece MATCHES "^[^/]*\\.js$")
+      string(REGEX REPLACE "\n *//[^\n]*" "" text "\n${text}")
+    endif()
     string(REPLACE "${include}" "${text}" page "${page}")
   endforeach()
   file(WRITE "${result}" "${page}")
