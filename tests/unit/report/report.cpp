@@ -3,6 +3,7 @@
 
 #include "files/file.hpp"
 #include "hdf5/hdf5_rows.hpp"
+#include "report/page_file.hpp"
 #include "report/report.hpp"
 #include "report/report_data.hpp"
 #include "report/report_outlines.hpp"
@@ -75,6 +76,18 @@ TEST_CASE("summary.json has every key a script may rely on") {
   for (const char* key : {"mass_drift", "area_drift_max", "momentum_residual"})
     CHECK(summary["conservation"].contains(key));
   CHECK_FALSE(summary.contains("failure"));
+}
+
+TEST_CASE("a page has the names of files and not the folders of its author") {
+  const Json data{{"scene_file", "/home/somebody/scenes/a.json"},
+                  {"study_file", "studies/b.json"},
+                  {"plugins", {{{"library", "/opt/somewhere/libmorse.so"}}}},
+                  {"pointer", "/cells/0"}};
+  const Json shown = embedded(page_with(R"(<script type="application/json" id="data">@ROULEAU_DATA@</script>)", data));
+  CHECK(shown["scene_file"] == "a.json");
+  CHECK(shown["study_file"] == "studies/b.json");
+  CHECK(shown["plugins"][0]["library"] == "libmorse.so");
+  CHECK(shown["pointer"] == "/cells/0");
 }
 
 TEST_CASE("what is undefined is null in summary.json") {
