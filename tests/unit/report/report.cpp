@@ -79,10 +79,8 @@ TEST_CASE("summary.json has every key a script may rely on") {
 }
 
 TEST_CASE("a page has the names of files and not the folders of its author") {
-  const Json data{{"scene_file", "/home/somebody/scenes/a.json"},
-                  {"study_file", "studies/b.json"},
-                  {"plugins", {{{"library", "/opt/somewhere/libmorse.so"}}}},
-                  {"pointer", "/cells/0"}};
+  const Json data = Json::parse(R"({"scene_file": "/home/somebody/scenes/a.json", "study_file": "studies/b.json",
+    "plugins": [{"library": "/opt/somewhere/libmorse.so"}], "pointer": "/cells/0"})");
   const Json shown = embedded(page_with(R"(<script type="application/json" id="data">@ROULEAU_DATA@</script>)", data));
   CHECK(shown["scene_file"] == "a.json");
   CHECK(shown["study_file"] == "studies/b.json");
