@@ -16,6 +16,8 @@ HERE = pathlib.Path(__file__).parent
 # Debian's packages libjs-katex and libjs-lunr.
 LIBRARIES = pathlib.Path("/usr/share/javascript")
 INTERFACES = ["sdk/include/rouleau", "host/core"]
+# A link that shows the name of the file that it leads to.
+FILE_NAMED = re.compile(r'(<a href="([^"#:]*\.md)(?:#[^"]*)?">)(?:<code>)?[\w./-]+\.md(?:</code>)?</a>')
 LINK = re.compile(r'(href|src)="([^"#:]*)(#[^"]*)?"')
 PAGE = """<!doctype html>
 <html lang="en">
@@ -23,22 +25,26 @@ PAGE = """<!doctype html>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">
-<title>{title} - Rouleau</title>
+<title>{title}</title>
 <link rel="stylesheet" href="katex/katex.min.css">
 <link rel="stylesheet" href="site.css">
 </head>
-<body>
-<a class="menu" href="#pages">All pages</a>
-<main>
+<body class="{kind}">
+<a class="skip" href="#text">To the text</a>
+<nav>
+<p class="home"><a href="index.html">Rouleau</a></p>
+<label for="search">Search</label>
+<input id="search" type="search" placeholder="Search" autocomplete="off">
+<ul id="found" aria-live="polite"></ul>
+<details id="pages" open><summary>All pages</summary>
+{navigation}
+</details>
+</nav>
+<main id="text">
 {body}
 <footer>{previous}{next}</footer>
 </main>
-<nav id="pages">
-<label for="search">Search</label>
-<input id="search" type="search" autocomplete="off">
-<ul id="found" aria-live="polite"></ul>
-{navigation}
-</nav>
+{contents}
 <script src="lunr.js"></script>
 <script src="katex/katex.min.js"></script>
 <script src="search.js"></script>
@@ -46,6 +52,17 @@ PAGE = """<!doctype html>
 </body>
 </html>
 """
+# Who comes, and where they begin: the doors of the first page.
+DOORS = {
+    "I have a question about cells": ("Run it, change it, see it in ParaView and Python. Nothing is compiled but the program.",
+        ["docs/first-run.md", "docs/first-run-3d.md", "docs/tutorial.md", "docs/scene.md", "docs/walls.md", "docs/gallery.md"]),
+    "I write a model": ("A membrane law, a potential or a collision operator: two files outside of the program.",
+        ["sdk/README.md", "docs/models.md", "docs/conformance.md", "docs/methods.md", "docs/library.md"]),
+    "I check the numbers": ("Errors against exact solutions and experiments, and error bars for a run of your own.",
+        ["docs/accuracy.md", "docs/experiments.md", "docs/error-bars.md", "docs/physics.md", "docs/study.md"]),
+}
+# Pictures that are drawn on white, in colours that stand for something: a dark page turns white into black and keeps the hues.
+ON_WHITE = re.compile(r"\.svg$|/(?!rouleau-in-space|suspension-in-space|four-cells-in-space|three-dimensions)[\w.-]+\.(?:png|webp)$")
 
 
 def name_of(page):
@@ -69,9 +86,34 @@ def rendered(text):
     # GitHub's forms of a formula: a block of "math", and code between dollars.
     body = re.sub(r'<pre><code class="language-math">(.*?)</code></pre>', r'<div class="math">\1</div>', body, flags=re.S)
     body = re.sub(r"\$<code>(.*?)</code>\$", r'<span class="math">\1</span>', body)
-    # A table wider than a phone scrolls by itself and leaves the page where it is.
-    body = body.replace("<table>", '<div class="table"><table>').replace("</table>", "</table></div>")
-    return body, converter.toc_tokens
+    body = re.sub(r"<pre><code(?: class=\"language-(\w+)\")?>(.*?)</code></pre>", coloured, body, flags=re.S)
+    return re.sub(r"<table>.*?</table>", carded, body, flags=re.S), converter.toc_tokens
+
+
+def coloured(block):
+    """A block of code, coloured where its language is known: a scene without one begins with a bracket or a key."""
+    from pygments import highlight, lexers
+    from pygments.formatters import HtmlFormatter
+
+    text = html.unescape(block[2])
+    language = block[1] or ("json" if re.match(r'\s*[{\["]', text) else "cpp" if "#include" in text else "text")
+    return f'<div class="code"><pre><code>{highlight(text, lexers.get_lexer_by_name(language), HtmlFormatter(nowrap=True))}</code></pre></div>'
+
+
+def carded(table):
+    """A table that can be read on a phone, where each row is a card and each cell names its column; long code breaks at its joints."""
+    heads = [html.escape(html.unescape(re.sub(r"<[^>]*>", "", head)), quote=True) for head in re.findall(r"<th[^>]*>(.*?)</th>", table[0], re.S)]
+
+    def row(cells):
+        columns = iter(heads)
+        return re.sub(r"<td([^>]*)>", lambda cell: f'<td{cell[1]} data-head="{next(columns, "")}">', cells[0])
+
+    def breaking(text):
+        return re.sub(r"\S{9,}", lambda word: re.sub(r"(?<=[/_,=.])(?=\w)", "<wbr>", word[0]), text[0])
+
+    body = re.sub(r"<tr>.*?</tr>", row, table[0], flags=re.S)
+    kind = "table many" if len(heads) > 6 else "table"
+    return f'<div class="{kind}">{re.sub(r"(?<=>)[^<]+(?=<)", breaking, body)}</div>'
 
 
 def title_of(root, page):
@@ -93,30 +135,61 @@ def sections_of(page, title, body):
                    "text": " ".join(words.split())}
 
 
-def navigation(titles, current, sections, interfaces):
+def navigation(titles, current, interfaces):
     lines = []
     for chapter, pages in CHAPTERS.items():
-        lines.append(f"<p>{chapter}</p><ul>")
+        lines.append(f"<details{' open' if current in pages else ''}><summary>{chapter}</summary><ul>")
         for page in pages:
             here = ' aria-current="page"' if page == current else ""
-            lines.append(f'<li><a href="{name_of(page)}"{here}>{plain(titles[page])}</a>')
-            if page == current and sections:
-                entries = "".join(f'<li><a href="#{token["id"]}">{token["name"]}</a></li>' for token in sections)
-                lines.append(f"<ul>{entries}</ul>")
-            lines.append("</li>")
+            lines.append(f'<li><a href="{name_of(page)}"{here}>{plain(titles[page]).split(":")[0]}</a></li>')
         if chapter == "Extend" and interfaces:
             lines.append('<li><a href="interfaces/index.html">Interfaces in C and C++</a></li>')
-        lines.append("</ul>")
+        lines.append("</ul></details>")
     return "\n".join(lines)
 
 
-def relinked(body, root, page, out):
-    """Links to pages lead to their HTML; files of the source are copied beside it, folders only named."""
+def contents(tokens):
+    """What a page has, beside it: headings of the second level and the third."""
+    def entries(these):
+        return "".join(f'<li><a href="#{token["id"]}">{token["name"]}</a>{entries(token["children"])}</li>' for token in these).join(
+            ("<ul>", "</ul>")) if these else ""
+
+    tokens = [child for token in tokens for child in (token["children"] if token["level"] == 1 else [token])]
+    if len(tokens) < 2:
+        return "<aside></aside>"
+    return f'<aside><details open><summary>On this page</summary>{entries(tokens)}</details></aside>'
+
+
+def landing(body, titles):
+    """README.md, with doors in place of its list of where to begin."""
+    doors = ""
+    for title, (words, pages) in DOORS.items():
+        links = "".join(f'<li><a href="{name_of(page)}">{plain(titles[page]).split(":")[0]}</a></li>' for page in pages)
+        doors += f"<section><h2>{title}</h2><p>{words}</p><ul>{links}</ul></section>"
+    doors = f'<div class="doors">{doors}</div>'
+    begin = re.search(r'<h2 id="where-to-begin">.*?(?=<h2 )', body, re.S)
+    film = re.search(r"<p><img [^>]*></p>", body)
+    return f"{body[:film.end()]}{doors}{body[film.end():begin.start()]}{body[begin.end():]}"
+
+
+def relinked(body, root, page, out, titles):
+    """Links to pages lead to their HTML, and show titles in place of file names; files of the source are copied beside it, folders
+    only named."""
+    def page_of(target):
+        return os.path.normpath(os.path.join(os.path.dirname(page), target))
+
+    def named(link):
+        return f"{link[1]}{plain(titles[page_of(link[2])]).split(':')[0]}</a>" if page_of(link[2]) in PAGES else link[0]
+
+    def picture(image):
+        source = re.search(r'src="([^"]*)"', image[1])[1]
+        return f'<img class="{"on-white" if ON_WHITE.search(source) else "own-ground"}" {image[1]}>'
+
     def one(match):
         attribute, target, anchor = match[1], match[2], match[3] or ""
         if not target:
             return match[0]
-        path = os.path.normpath(os.path.join(os.path.dirname(page), target))
+        path = page_of(target)
         if path in PAGES:
             return f'{attribute}="{name_of(path)}{anchor}"'
         if (root / path).is_file():
@@ -125,6 +198,8 @@ def relinked(body, root, page, out):
             shutil.copyfile(root / path, copy)
             return f'{attribute}="files/{path}{anchor}"'
         raise SystemExit(f"{page}: no file {target}")
+
+    body = re.sub(r"<img ([^>]*)>", picture, FILE_NAMED.sub(named, body))
     return LINK.sub(one, body)
 
 
@@ -135,6 +210,10 @@ def what_is_missing():
         import markdown  # noqa: F401
     except ImportError:
         missing.append("python3-markdown")
+    try:
+        import pygments  # noqa: F401
+    except ImportError:
+        missing.append("python3-pygments")
     return missing
 
 
@@ -169,8 +248,11 @@ def write(root, out):
             there = PAGES[other] if 0 <= other < len(PAGES) else None
             step[word] = f'<a class="{word}" href="{name_of(there)}">{plain(titles[there])}</a>' if there else ""
         searchable += sections_of(page, titles[page].replace("`", ""), body)
-        text = PAGE.format(title=plain(titles[page]), navigation=navigation(titles, page, tokens, interfaces),
-                           body=relinked(body, root, page, out), **step)
+        first = page == "README.md"
+        body = relinked(body, root, page, out, titles)
+        text = PAGE.format(title="Rouleau: red blood cells in flow" if first else f"{plain(titles[page])} - Rouleau",
+                           kind="first" if first else "page", navigation=navigation(titles, page, interfaces),
+                           contents="" if first else contents(tokens), body=landing(body, titles) if first else body, **step)
         (out / name_of(page)).write_text(text)
     for name in ("site.css", "site.js"):
         shutil.copyfile(HERE / name, out / name)
