@@ -3,6 +3,8 @@
 import json
 import subprocess
 
+import cells
+
 HEAD = """# Every model that is shipped
 
 Made by scripts/docs from the manifests in plugins/; not to be edited. [../models.md](../models.md) says what each
@@ -61,15 +63,12 @@ def dimensions_of(manifest, program):
 def section(manifest, path, program):
     text = f"\n### {manifest['id']}\n\n{manifest['title']}. Version {manifest['version']}.\n\n"
     if manifest.get("parameters"):
-        text += "| parameter | role | unit | default | limits | usual | meaning |\n|---|---|---|---|---|---|---|\n"
-        text += "".join(f"| {' | '.join(parameter_row(p))} |\n" for p in manifest["parameters"])
+        text += cells.table(["parameter", "role", "unit", "default", "limits", "usual", "meaning"], map(parameter_row, manifest["parameters"]))
     else:
         text += "No parameters.\n"
     if manifest.get("state"):
-        text += "\n| remembers | unit | at first | meaning |\n|---|---|---|---|\n"
-        for state in manifest["state"]:
-            cells = [f"`{state['name']}`", state["unit"], number(state.get("initial", 0)), state.get("doc", "")]
-            text += f"| {' | '.join(cells)} |\n"
+        text += "\n" + cells.table(["remembers", "unit", "at first", "meaning"], [
+            [f"`{state['name']}`", state["unit"], number(state.get("initial", 0)), state.get("doc", "")] for state in manifest["state"]])
     text += f"\n- works in {' and '.join(map(str, dimensions_of(manifest, program)))} dimensions\n"
     text += f"- needs {names(manifest['needs'])}\n- gives {names(manifest['gives'])}\n"
     if "in_3d" in manifest:

@@ -2,6 +2,9 @@
 
 import json
 import re
+import textwrap
+
+import cells
 
 HEAD = """# Every key of a scene
 
@@ -106,9 +109,7 @@ def children(schema, rule, pointer):
 
 
 def table(rows_of_table):
-    lines = ["| key | type | default | meaning |", "|---|---|---|---|"]
-    lines += [f"| {' | '.join(row)} |" for row in rows_of_table]
-    return "\n".join(lines) + "\n"
+    return cells.table(["key", "type", "default", "meaning"], rows_of_table)
 
 
 def page(path):
@@ -123,5 +124,6 @@ def page(path):
         required = " Required." if key in schema["required"] else ""
         lists = [branch for branch in (rule, *rule.get("oneOf", [])) if branch.get("type") == "array"]
         of_each = " " + meaning(resolved(schema, lists[0]["items"])) if lists else ""
-        text += f"\n## {key}\n\n{meaning(rule)}{of_each}{required}\n\n" + table(children(schema, rule, f"/{key}"))
+        lead = textwrap.fill(f"{meaning(rule)}{of_each}{required}", 140, break_long_words=False, break_on_hyphens=False)
+        text += f"\n## {key}\n\n{lead}\n\n" + table(children(schema, rule, f"/{key}"))
     return text

@@ -22,14 +22,6 @@ ENTRY = 25  # words of an entry of the changelog
 NOT_YET = {
     "docs/scene.md",
     "docs/walls.md",
-    "docs/models.md",
-    "docs/simulation.md",
-    "docs/reference/scene.md",
-    "docs/reference/models.md",
-    "docs/physics.md",
-    "docs/paper.md",
-    "sdk/README.md",
-    "docs/architecture.md",
 }
 RESULTS = "docs/results/"
 CODE = re.compile(r"^```.*?^```$|(?:(?<=\n\n)|\A)(?: {4}[^\n]*(?:\n|\Z)|[ \t]*\n(?= {4}))+", re.MULTILINE | re.DOTALL)
