@@ -6,6 +6,8 @@ function(rouleau_embed_texts target namespace header)
   while(ARGN)
     list(POP_FRONT ARGN variable file)
     rouleau_read_text(text "${file}")
+    # Where a shipped scene has its schema is not where a scene made from it has it.
+    string(REGEX REPLACE "\n *\"[$]schema\": \"[.][^\n]*" "" text "${text}")
     string(APPEND definitions "\nconst std::string_view ${variable} = R\"ROULEAU(${text})ROULEAU\";\n")
   endwhile()
   rouleau_embedded_source(${target} ${namespace} "${header}" "${definitions}")

@@ -5,6 +5,7 @@ usage: check_schema.py SOURCE BUILD
 
 import copy
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -172,6 +173,19 @@ class The_schema(unittest.TestCase):
                     value, pattern = HEADER[pointer]
                     self.assertEqual(default, value)
                     self.assertTrue(re.search(pattern, header), pattern)
+
+    def test_every_shipped_file_names_its_schema_for_editors_where_it_lies_and_where_it_is_installed(self):
+        kinds = {"rouleau": "scene", "rouleau_study": "study", "rouleau_limits": "limits"}
+        files = [file for folder in ("scenes", "studies", "limits") for file in (SOURCE / folder).glob("**/*.json")]
+        self.assertGreater(len(files), 90)
+        for file in files:
+            shipped = json.loads(file.read_text())
+            named = (file.parent / shipped["$schema"]).absolute()
+            kind = next(kinds[key] for key in kinds if key in shipped)
+            with self.subTest(file=str(file.relative_to(SOURCE))):
+                # share/rouleau has the folders scenes and schema side by side, as the source has.
+                self.assertEqual(pathlib.Path(os.path.normpath(named)), SOURCE.absolute() / f"schema/{kind}.schema.json")
+                self.assertEqual(json.loads(named.read_text())["properties"]["$schema"]["type"], "string")
 
     def test_descriptions_that_speak_of_a_default_have_one(self):
         for pointer, rule in RULES.items():
