@@ -107,8 +107,8 @@ def calibrate(scene: Union[SceneLike, Simulator], parameters: Mapping[str, tuple
     `parameters`: for each key or JSON pointer the lowest and the highest value, in one unit: `{"/interactions/0/parameters/
     depth": ("1e-8 J/m2", "1e-5 J/m2")}`. Where positive bounds differ tenfold or more the logarithm is searched.
     `observed`: for each name (value, standard error), in SI. A name is a path in summary.json with dots ("dimensionless.capillary",
-    "rheology.-1.means.relative_viscosity"; -1 is the last of a list), or a quantity of `Run.results`; or any word, with a function of the run as third
-    entry: (value, error, function), which gives a number, a Mean or a Statistics. In place of a scene there may be a
+    "rheology.-1.means.relative_viscosity"; -1 is the last of a list), or a quantity of `Run.results`. Or it is any word, with
+    a function of the run as third entry: (value, error, function), which gives a number, a Mean or a Statistics. In place of a scene there may be a
     function of the parameters' numbers to {name: number or (value, error)}.
 
     One parameter and one observation that rises or falls with it: bisection. Else the next points are those where a

@@ -18,7 +18,7 @@ class SeedMean(NamedTuple):
 
 def mean_of_seeds(values: Sequence[float], errors: Sequence[float]) -> SeedMean:
     """The mean over runs of different seeds. The spread of the runs holds what changes from seed to seed and, as its least
-    part, what each run does not know of its own mean: by chance it may come out below that, and then the latter stands."""
+    part, what each run does not know of its own mean. By chance it may come out below that, and then the latter stands."""
     count = len(values)
     if count == 0:
         return SeedMean(*[math.nan] * 5)
@@ -90,7 +90,7 @@ def statistics(values: Sequence[float], times: Sequence[float] | None = None) ->
 
     1. The finite values at their times, which rise, are taken at as many equal distances in time (linear between them).
        Without times they are taken as they are.
-    2. MSER-5: means of groups of five values (fewer where there are less than 100), of which so many are left out at the
+    2. MSER-5: means of groups of five values (fewer where there are less than 100). So many of them are left out at the
        beginning that the estimated variance of the mean of the others is least. Half as many again are left out. Where
        that is more than half of all, the series is not steady.
     3. Batch means: the others are cut into batches of equal length, from one value on 1.25 times as long until neighbouring

@@ -44,9 +44,9 @@ class Mean(NamedTuple):
 
 def mean_and_error(values: Sequence[float] | Floats, parts: int = 4, times: Sequence[float] | Floats | None = None,
                    begin: float = -math.inf) -> Mean:
-    """Mean of the finite `values` [n] over `times` [n] (not falling; without them each value counts the same) from `begin`
-    on, by trapezes, and its standard error from the means of `parts` parts of equal length, which are nearly independent
-    where a part is longer than the values remember. Nothing is left out. The error is nan where there are fewer values than
+    """Mean of the finite `values` [n] over `times` [n] from `begin` on, by trapezes, and its standard error from the means of
+    `parts` parts of equal length. These are nearly independent where a part is longer than the values remember. Times do
+    not fall; without them each value counts the same. Nothing is left out. The error is nan where there are fewer values than
     parts, and the mean where there is none."""
     values = list(values)  # a Series may begin with another number than 0
     times = list(times) if times is not None else None
@@ -404,9 +404,9 @@ class Run(Outputs):
     @property
     def results(self) -> pandas.DataFrame:
         """What came out: `value`, `error` and `how` the error was found, in SI, for each quantity (index). With error bars
-        these are all; without, means of the last stage with their standard error (Outputs.statistics; of what is not
-        steady the mean in time over its second half, whose error is nan), and the cells' mean deformation and, where cells attract each other, the number of
-        aggregates at the end, whose error is not known (nan)."""
+        these are all. Without them there are means of the last stage with their standard error (Outputs.statistics). Of
+        what is not steady it is the mean in time over the second half, with an unknown error (nan). The cells' mean
+        deformation at the end and, where cells attract each other, the number of aggregates have no known error (nan)."""
         import pandas
         bars = self.error_bars
         if len(bars):

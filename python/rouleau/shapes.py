@@ -36,8 +36,8 @@ def outline(points_m: ArrayLike, lower: Any = None, upper: Any = None) -> Shape:
 
 
 def mask(values: ArrayLike, path: str | os.PathLike[str], pixel: Any, at: Any = None, spacing: Any = None) -> Shape:
-    """The shape that an array makes, written as a PNG. `values` [ny, nx], the lowest row first, as fields have it: fluid may be
-    where they are True or 1, for `within` and for obstacles alike, and not where they are False or 0; the border runs where
+    """The shape that an array makes, written as a PNG. `values` [ny, nx] have the lowest row first, as fields do. Fluid may be
+    where they are True or 1, for `within` and for obstacles alike, and not where they are False or 0. The border runs where
     they pass 0.5. `pixel` is the distance of two values (m, or text with a unit), `at` the lower left corner of the picture
     in the domain, [0, 0] without it. In three dimensions values [nz, ny, nx] make a picture for each layer, `spacing` apart,
     with numbers in their names."""

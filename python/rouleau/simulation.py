@@ -178,7 +178,7 @@ class Simulation:
         return pandas.DataFrame(self._core.cells())
 
     def add_force(self, force: Callable[[Simulation], npt.ArrayLike] | None) -> None:
-        """Adds a force of your own to the membrane nodes, every step: `force(simulation)` returns newtons for each metre
+        """Adds a force of your own to the membrane nodes, every step. `force(simulation)` returns newtons for each metre
         of depth, shape (nodes, 2), or newtons, shape (nodes, 3), or what can be broadcast to it. None takes it away.
 
         It is asked when the forces of the models are known, and reads positions and velocities. Python is entered once

@@ -38,9 +38,9 @@ def sweep(scene: SceneLike, over: Mapping[str, Sequence[Any]], *, seeds: Sequenc
     processors), in directories below `out` that are named after their values. A run that is there already, of the same
     scene, files and values, is not run again unless `fresh`; one that was interrupted goes on.
 
-    Columns: a value for each key, under its last word ("depth") where that is unique, and where all values have one unit
-    the numbers beside it ("depth_J_per_m2"); `status` ("completed", "diverged", "interrupted"); for each quantity of
-    `Run.results` its value, in SI, and `QUANTITY_error`; `wall_s`; `directory`. With `measure`, what that function makes
+    A column has the value of each key, under its last word ("depth") where that is unique. Where all values have one unit
+    the numbers stand beside it ("depth_J_per_m2"). Then come `status` ("completed", "diverged", "interrupted"), for each
+    quantity of `Run.results` its value, in SI, and `QUANTITY_error`, `wall_s` and `directory`. With `measure`, what that function makes
     of a run stands in place of `Run.results`; a value may be a Mean or a Statistics. With `error_bars` errors are measured, which takes
     40 % longer; without, they are standard errors of means in time. A run that diverged has nan.
 
