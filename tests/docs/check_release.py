@@ -13,9 +13,11 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zipfile
 
 SOURCE = pathlib.Path(sys.argv[1])
-FILES = ("CMakeLists.txt", "CITATION.cff", "codemeta.json", "CHANGELOG.md", "python/rouleau/__init__.py", "scripts/release")
+FILES = ("CMakeLists.txt", "CITATION.cff", "codemeta.json", "CHANGELOG.md", "python/rouleau/__init__.py", "README.md",
+         "packaging/conda/meta.yaml", "packaging/spack/package.py", "scripts/release")
 VERSION = "98.7.6"  # of no release
 
 
@@ -63,6 +65,10 @@ class Release(unittest.TestCase):
         self.assertIn(f"\nversion: {VERSION}\ndate-released: 2031-05-04\n", (self.root / "CITATION.cff").read_text())
         codemeta = json.loads((self.root / "codemeta.json").read_text())
         self.assertEqual((codemeta["version"], codemeta["datePublished"]), (VERSION, "2031-05-04"))
+        for name, line in (("python/rouleau/__init__.py", f'__version__ = "{VERSION}"'), ("README.md", f"Version {VERSION.rsplit('.', 1)[0]}, "),
+                           ("packaging/conda/meta.yaml", f'{{% set version = "{VERSION}" %}}'),
+                           ("packaging/spack/package.py", f'    version("{VERSION}", tag="v{VERSION}")')):
+            self.assertIn(f"\n{line}", (self.root / name).read_text())
         self.assertEqual(self.git("rev-parse", f"v{VERSION}^{{commit}}"), self.git("rev-parse", "HEAD"))
         self.assertEqual(self.git("status", "--porcelain"), "")
 
@@ -121,7 +127,10 @@ class Release(unittest.TestCase):
         citation = (SOURCE / "CITATION.cff").read_text()
         codemeta = json.loads((SOURCE / "codemeta.json").read_text())
         cited = dict(re.findall(r"^(\w[\w-]*): (.+)$", citation, re.MULTILINE))
-        self.assertEqual({build}, {cited["version"], codemeta["version"]})
+        package = re.search(r'^__version__ = "(.*)"', (SOURCE / "python/rouleau/__init__.py").read_text(), re.MULTILINE)[1]
+        conda = re.search(r'^{% set version = "(.*)" %}', (SOURCE / "packaging/conda/meta.yaml").read_text(), re.MULTILINE)[1]
+        spack = re.findall(r'version\("([\d.]+)", tag="v([\d.]+)"', (SOURCE / "packaging/spack/package.py").read_text())
+        self.assertEqual({build}, {cited["version"], codemeta["version"], package, conda, *spack[0]})
         self.assertEqual(cited.get("date-released"), codemeta.get("datePublished"))
         self.assertEqual(cited["title"], codemeta["name"])
         self.assertEqual(f"https://spdx.org/licenses/{cited['license']}", codemeta["license"])
@@ -131,6 +140,50 @@ class Release(unittest.TestCase):
         article = codemeta["referencePublication"][0]
         self.assertEqual(f"https://doi.org/{re.search(r'^    doi: (.*)$', citation, re.MULTILINE)[1]}", article["id"])
         self.assertIn(f"    title: {article['name']}\n", citation)
+
+
+class Recipes(unittest.TestCase):
+    """What can be known of them without conda and spack: their form, and that what they name is there."""
+
+    def test_options_and_components_of_the_recipes_are_those_of_the_build(self):
+        build = "".join(path.read_text() for path in [SOURCE / "CMakeLists.txt", *SOURCE.glob("*/CMakeLists.txt"), *SOURCE.glob("host/transport/*.cmake")])
+        conda, spack = ((SOURCE / name).read_text() for name in ("packaging/conda/meta.yaml", "packaging/spack/package.py"))
+        options = set(re.findall(r"\b(ROULEAU_[A-Z]+)(?==|\")", conda + spack)) - {"ROULEAU_GIT"}
+        self.assertEqual(options, {"ROULEAU_MPI", "ROULEAU_PYTHON"} | {name for name in options if name == "ROULEAU_PYTHON_FOLDER"})
+        for name in options:
+            self.assertTrue(re.search(rf"set\({name} ", build), name)
+        for component in re.findall(r"--component (\w+)", conda):
+            self.assertTrue(re.search(rf"COMPONENT {component}\b", build), component)
+        compile(spack, "package.py", "exec")
+
+    def test_the_conda_recipe_is_yaml(self):
+        try:
+            import jinja2
+            import yaml
+        except ImportError:
+            self.skipTest("jinja2 or yaml is missing")
+        text = re.sub(r"# \[.*\]$", "", (SOURCE / "packaging/conda/meta.yaml").read_text(), flags=re.MULTILINE)
+        recipe = yaml.safe_load(jinja2.Template(text).render(compiler=lambda language: f"{language}-compiler"))
+        self.assertEqual(recipe["source"]["git_rev"], f"v{recipe['package']['version']}")
+        self.assertIn("cxx-compiler", recipe["requirements"]["build"])
+
+    def test_the_python_package_becomes_a_wheel_with_all_its_files(self):
+        python = next((python for python in ("/usr/bin/python3", sys.executable) if subprocess.run(
+            [python, "-c", "import setuptools, wheel; assert int(setuptools.__version__.split('.')[0]) >= 61"], capture_output=True).returncode == 0), None)
+        if not python:
+            self.skipTest("setuptools and wheel are missing (Debian: python3-setuptools, python3-wheel)")
+        with tempfile.TemporaryDirectory(prefix="rouleau-wheel-") as name:
+            folder = pathlib.Path(name)
+            shutil.copytree(SOURCE / "python/rouleau", folder / "python/rouleau")
+            (folder / "docs").mkdir()
+            for file in ("pyproject.toml", "docs/python.md"):
+                shutil.copy(SOURCE / file, folder / file)
+            made = subprocess.run([python, "-c", "from setuptools.build_meta import build_wheel; print(build_wheel('.'))"], cwd=folder,
+                                  capture_output=True, text=True)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            with zipfile.ZipFile(next(folder.glob("rouleau-*-py3-none-any.whl"))) as wheel:
+                held = {file.split("/")[1] for file in wheel.namelist() if file.startswith("rouleau/")}
+        self.assertEqual(held, {path.name for path in (SOURCE / "python/rouleau").iterdir() if path.name != "__pycache__"})
 
 
 if __name__ == "__main__":
