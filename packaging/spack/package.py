@@ -1,4 +1,4 @@
-# spack repo create rouleau-repo; cp this file to rouleau-repo/packages/rouleau/package.py; spack repo add rouleau-repo;
+# spack repo create rouleau-repo; cp -r packaging/spack rouleau-repo/packages/rouleau; spack repo add rouleau-repo;
 # ROULEAU_GIT=/where/the/repository/is spack install rouleau
 import os
 

@@ -203,6 +203,17 @@ def cells_in_space(test, block):
     test.plan(scene | json.loads("{" + block.text.strip().rstrip(",") + "}"))
 
 
+def keys_of_a_type_in_space(test, block):
+    scene = json.loads((SOURCE / "scenes/suspension-3d.json").read_text())
+    scene["cell_types"]["rbc"].update(json.loads("{" + block.text + "}"))
+    test.plan(scene)
+
+
+def cells_of_the_template_in_space(test, block):
+    scene = json.loads((SOURCE / "scenes/templates/red-cell-3d.json").read_text())
+    test.plan(scene | json.loads("{" + block.text.strip().rstrip(",") + "}"))
+
+
 def law_in_space(test, block):
     scene = json.loads((SOURCE / "scenes/suspension-3d.json").read_text())
     scene["cell_types"]["rbc"]["membrane"].append(json.loads(block.text))
@@ -289,6 +300,7 @@ BLOCKS = [
      lambda test, block: test.conform(FILM_SOURCE % block.text, FILM)),
     ("docs/scene.md", '{\n  "rouleau": 1', lambda test, block: test.plan(block.text)),
     ("docs/scene.md", '"cell_types": { "rbc": { "from"', cells_in_space),
+    ("docs/scene.md", '"shape": {"biconcave"', keys_of_a_type_in_space),
     ("docs/scene.md", '{"type": "rbc", "at"', part_of_scene("cells")),
     ("docs/scene.md", '{"type": "rbc", "row"', part_of_scene("cells")),
     ("docs/scene.md", '{"type": "rbc", "list"', part_of_scene("cells")),
@@ -313,6 +325,7 @@ BLOCKS = [
     ("docs/three-dimensions.md", '"domain": {', domain_of_a_tube),
     ("docs/three-dimensions.md", '"cells": [', cells_in_space),
     ("docs/three-dimensions.md", '"cell_types": {', "of scenes/capsule-3d.json, which tests/physics runs"),
+    ("docs/first-run-3d.md", '"cells": [', cells_of_the_template_in_space),
     ("docs/first-run-3d.md", "import rouleau", lambda test, block: ast.parse(block.text)),
     ("docs/first-run.md", "import rouleau", lambda test, block: ast.parse(block.text)),
     ("docs/output-frames.md", "import h5py", lambda test, block: ast.parse(block.text)),

@@ -118,6 +118,32 @@ class Readme(unittest.TestCase):
         error = float(row[place].split("/")[-1]) / float(row[-1]) - 1
         self.assertIn(f"within {100 * error:.1f} % of a boundary integral at 6 lattice spacings a radius", " ".join(README.split()))
 
+    def test_points_of_experiments_are_counted(self):
+        table = (SOURCE / "docs/results/experiments.md").read_text()
+        rows = re.findall(r"^\| ([a-z-]+) \|.*\| (inside|\*\*outside\*\*) \|$", table, re.MULTILINE)
+        inside = sum(verdict == "inside" for _, verdict in rows)
+        self.assertIn(f"meets {inside} of {len(rows)} points of [eight experiments]", " ".join(README.split()))
+        self.assertEqual(len({name for name, _ in rows}), 8)
+
+    def test_the_tests_take_as_long_as_was_measured(self):
+        minutes = {"half an hour": 30, "three quarters of an hour": 45, "an hour": 60}
+        said = minutes[re.search(r"runs the tests: about (.*?) on two cores", " ".join(README.split()))[1]]
+        log = " ".join((SOURCE / "docs/results/build-2026-11.md").read_text().split())
+        build, tests = (float(re.search(pattern, log)[1].replace(" ", "")) for pattern in
+                        (r"release \(930 jobs, ([\d ]+) s of the clock", r"runs its tests \(.*?([\d ]+) s\b"))
+        self.assertAlmostEqual((build + tests) / 60 / said, 1, delta=0.4)
+
+    def test_films_move_and_the_first_picture_is_one(self):
+        first = re.search(r"!\[[^\]]*\]\(([^)]*)\)", README)[1]
+        self.assertIn(b"ANIM", (SOURCE / first).read_bytes()[:100])  # a WebP that moves
+        self.assertIn("in-space", first)
+
+    def test_every_command_is_there(self):
+        for block in re.findall(r"\n\n((?:    .*\n)+)", README):
+            for line in block.split("\n"):
+                if line.strip():
+                    self.assertTrue(os.access(SOURCE / line.split()[0], os.X_OK), line)
+
     def test_pictures_and_scenes_are_there_and_short_lines_fit(self):
         for path in re.findall(r"\]\(((?:docs/pictures|scenes)/[^)]*)\)", README):
             self.assertTrue((SOURCE / path).is_file(), path)

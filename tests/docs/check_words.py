@@ -1,7 +1,6 @@
 """Pages of use can be read: short sentences, short lines, small cells, few numbers in a sentence.
 
-Results (docs/results) and the changelog are not held to that, nor is code. Pages that are older than the rule are listed in
-NOT_YET: the list may only shrink, and a page in it that keeps the rule fails, so that it is taken out.
+Results (docs/results) and the changelog are not held to that, nor is code.
 
 usage: check_words.py SOURCE BUILD [--counts]     with --counts: how often each page breaks each rule
 """
@@ -19,10 +18,6 @@ from pages import PAGES  # noqa: E402
 
 WORDS, LINE, CELL, NUMBERS = 35, 160, 160, 5  # at most: words and numbers of a sentence, characters of a line and of a cell
 ENTRY = 25  # words of an entry of the changelog
-NOT_YET = {
-    "docs/scene.md",
-    "docs/walls.md",
-}
 RESULTS = "docs/results/"
 CODE = re.compile(r"^```.*?^```$|(?:(?<=\n\n)|\A)(?: {4}[^\n]*(?:\n|\Z)|[ \t]*\n(?= {4}))+", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"!?\[([^\]]*)\]\([^)]*\)")
@@ -90,7 +85,7 @@ class Words(unittest.TestCase):
 
     def test_pages_of_use_can_be_read(self):
         for page in PAGES:
-            if page.startswith(RESULTS) or page in NOT_YET:
+            if page.startswith(RESULTS):
                 continue
             found = [f"{page}:{line}: {rule}: {what}" for line, rule, what in faults((SOURCE / page).read_text())]
             self.assertEqual(found, [], f"{page}: at most {WORDS} words and {NUMBERS} numbers a sentence, {LINE} characters a line, "
@@ -101,11 +96,6 @@ class Words(unittest.TestCase):
         entries = re.findall(r"^- (.*(?:\n  .*)*)", unreleased[1], re.MULTILINE) if unreleased else []
         long = [entry for entry in entries if len(entry.split()) > ENTRY]
         self.assertEqual(long, [], f"at most {ENTRY} words; what was measured belongs into {RESULTS}")
-
-    def test_the_list_of_older_pages_only_shrinks(self):
-        self.assertEqual(NOT_YET - set(PAGES), set(), "no pages")
-        kept = {page for page in NOT_YET if not list(faults((SOURCE / page).read_text()))}
-        self.assertEqual(kept, set(), "these keep the rule now: take them out of NOT_YET")
 
 
 def counts():
