@@ -218,9 +218,18 @@ def score(mutants, seed, jobs):
     return missed
 
 
+def templates(folder):
+    """The sources of what rouleau new makes, of every kind and for each dimension."""
+    kinds = [("collision",), ("interaction",), *(("membrane", "--dimensions", number) for number in ("2", "3", "both"))]
+    for words in kinds:
+        name = "template-" + "-".join(word for word in words if not word.startswith("--"))
+        subprocess.run([ROULEAU, "new", words[0], name, *words[1:], "--dir", folder], stdout=subprocess.DEVNULL, check=True)
+        yield folder / name / f"{name}.cpp"
+
+
 def honest(build_folder, runs, seed, jobs):
-    """The shipped models, the honest ones that the faulty are made of, those of the first release, the SDK's examples.
-    One run in ten has the check of threads, which takes as long as all others."""
+    """The shipped models, the honest ones that the faulty are made of, those of the first release, the SDK's examples,
+    what rouleau new makes. One run in ten has the check of threads, which takes as long as all others."""
     shown = subprocess.run([ROULEAU, "conform", "--help"], capture_output=True, text=True, check=True).stdout
     quick = set(re.findall(r"^    ([a-z0-9-]+) +\S", shown, re.M)) - {"threads"}
     shipped = sorted((build_folder / "lib" / "rouleau" / "plugins").glob("*/*/*.json"))
@@ -228,9 +237,9 @@ def honest(build_folder, runs, seed, jobs):
     others = sorted((build_folder / "tests" / "abi" / "frozen-1.0").glob("*.json"))
     wrong = 0
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        for path in EXAMPLES:
-            place = Path(folder) / path.stem
-            place.mkdir()
+        for path in [*EXAMPLES, *templates(Path(folder))]:
+            place = Path(folder) / "built" / path.stem
+            place.mkdir(parents=True)
             others += build(place, Source(path), None)
         files = [(file, True) for file in shipped] + [(file, False) for file in others]
         tries = [(*files[i % len(files)], seed + i) for i in range(runs)]
@@ -238,7 +247,9 @@ def honest(build_folder, runs, seed, jobs):
         def run(tried):
             file, publish, number = tried
             return verdict([file], number, publish, (quick if publish else quick - {"pinned"}) if number % 10 else ())
-        for (file, publish, number), found in zip(tries, pool.map(run, tries)):
+        for done, ((file, publish, number), found) in enumerate(zip(tries, pool.map(run, tries))):
+            if done % 500 == 499:
+                print(f"  {done + 1} runs, {wrong} false alarms before", flush=True)
             if found:
                 wrong += 1
                 level = " --level publish" if publish else ""
