@@ -1,6 +1,6 @@
 """The program as a user meets it: commands, exit codes, messages and files. Python's standard library only.
 
-usage: check_commands.py ROULEAU PLUGIN_FOLDER SOURCE_FOLDER
+usage: check_commands.py ROULEAU PLUGIN_FOLDER SOURCE_FOLDER [--no-whole-runs]
 """
 
 import hashlib
@@ -20,6 +20,7 @@ from pathlib import Path
 PROGRAM, PLUGINS, SOURCE = (Path(a).resolve() for a in sys.argv[1:4])
 SCENE = SOURCE / "scenes" / "four-cells-shear.json"
 SHORT = ["--max-steps", "20", "--quiet"]
+whole_runs = unittest.skipIf("--no-whole-runs" in sys.argv, "slow")  # where the program is ten times slower
 
 
 class Installation:
@@ -273,11 +274,13 @@ class A_run_that_goes_bad_stops_before_garbage_is_written(Case):
     def test_a_flow_too_fast_for_the_lattice(self):
         self.stop("mach", '/stages/1/shear_rate="600 1/s"', '/stages/0/duration="1 ms"')
 
+    @whole_runs
     def test_area_that_drifts(self):
         failure = self.stop("area_drift", "/checks/area_drift=2e-5")
         self.assertGreater(failure["value"], failure["limit"])
         self.assertNotIn("segments", failure["remedy"])
 
+    @whole_runs
     def test_area_that_drifts_because_segments_are_too_long(self):
         plan = self.rouleau.run("plan", SCENE, "--set", "/cell_types/rbc/segments=32")
         self.assertEqual(plan.returncode, 0, plan.stderr)
@@ -611,6 +614,7 @@ class Commands_do_what_they_say(Case):
         self.assert_stops(result, 2, "overlap")
         self.assertFalse((self.path / "runs").exists())
 
+    @whole_runs
     def test_bits_do_not_depend_on_threads(self):
         tables = []
         for threads in (1, 2):
@@ -681,6 +685,7 @@ class Names_are_no_more_than_names(Case):
 class Cells_that_nothing_attracts(Case):
     WORDS = re.compile(r"rouleau(x| of)|aggregat|joined|broke|single cells", re.IGNORECASE)
 
+    @whole_runs
     def test_are_close_and_no_more_in_what_a_run_says(self):
         scene = json.loads(SCENE.read_text())
         row = {"type": "rbc", "row": {**scene["cells"][0]["row"], "spacing": "3.0 um"}}

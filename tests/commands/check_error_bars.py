@@ -1,6 +1,6 @@
 """Error bars: when they are made, where they are said, and what becomes of them when something comes between.
 
-usage: check_error_bars.py ROULEAU SCENE_FOLDER
+usage: check_error_bars.py ROULEAU SCENE_FOLDER [--no-whole-runs]
 SCENE_FOLDER: tests/physics/scenes. Python's standard library only.
 """
 
@@ -14,6 +14,7 @@ import unittest
 from pathlib import Path
 
 PROGRAM, SCENES = (Path(a).resolve() for a in sys.argv[1:3])
+whole_runs = unittest.skipIf("--no-whole-runs" in sys.argv, "slow")  # where the program is ten times slower
 BAR = re.compile(r"^deformation [0-9.]+ \+- [0-9.]+$", re.M)
 
 
@@ -81,6 +82,7 @@ class Error_bars(Case):
         self.assertEqual([run["role"] for run in summary["error_bar_runs"]["companions"]], ["lattice", "order", "inertia"])
         self.assertIn(summary["error_bars"]["deformation"]["how"], (self.run_directory / "report.html").read_text())
 
+    @whole_runs
     def test_come_by_themselves_where_numerics_are_chosen_unless_they_are_refused(self):
         scene = self.scene("auto-capsule.json", strain=1)
         summary = self.assert_whole(rouleau("run", scene, "--out", self.run_directory, "--quiet"))
@@ -91,6 +93,7 @@ class Error_bars(Case):
         self.assertEqual(refused.returncode, 0, refused.stderr)
         self.assertNotIn("error_bars", self.summary())
 
+    @whole_runs
     def test_that_miss_the_target_are_followed_by_a_finer_run_and_the_first_run_stays(self):
         # A strain of 1.5 is in the middle of the start, which the density of auto's motion delays by far more than it expects.
         command = ("run", self.scene("auto-capsule.json", strain=1.5), "--out", self.run_directory, "--quiet",
@@ -123,6 +126,7 @@ class Error_bars(Case):
         self.assertEqual(result.returncode, 2)
         self.assertIn("give one of them", result.stderr)
 
+    @whole_runs
     def test_are_added_to_a_run_that_has_ended_without_them(self):
         scene = self.scene()
         rouleau("run", scene, "--out", self.run_directory, "--quiet")
@@ -130,6 +134,7 @@ class Error_bars(Case):
         summary = self.assert_whole(rouleau("run", scene, "--out", self.run_directory, "--quiet", "--resume", "--error-bar"))
         self.assertEqual((self.tables(), summary["steps"]), (tables, steps))
 
+    @whole_runs
     def test_that_an_interruption_has_cut_off_are_missing_and_come_with_the_next_command(self):
         for strain in (40, 160, 640):  # on a busy machine the shorter ones may be whole before the signal comes
             told, code = self.interrupt_error_bars(self.scene(strain=strain, density_factor=1500))

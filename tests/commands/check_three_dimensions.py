@@ -18,6 +18,7 @@ from scene_parts import changed  # noqa: E402
 
 PROGRAM, DUCT = Path(sys.argv[1]).resolve(), json.loads(Path(sys.argv[2]).read_text())
 WITHOUT_WHOLE_RUNS = "--no-whole-runs" in sys.argv  # where the program is ten times slower
+whole_runs = unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
 WALLS = {"lower": {"wall": {}}, "upper": {"wall": {}}}
 PLANE = {
     "rouleau": 1,
@@ -112,6 +113,7 @@ class Case(unittest.TestCase):
 
 
 class A_run_in_three_dimensions(Case):
+    @whole_runs
     def test_of_a_duct_has_the_flow_rate_of_the_series(self):
         scene = changed(DUCT, domain__nodes=[4, 16, 16], domain__size=["5 um", "20 um", "20 um"],
                         fluid__inertia=False, output__fields={"seconds": "0.2 s", "quantities": ["velocity"]})
@@ -120,6 +122,7 @@ class A_run_in_three_dimensions(Case):
         self.assertAlmostEqual(float(last["flow_rate_m2_per_s"]) / expected, 1, delta=3e-3)
         self.assertAlmostEqual(float(last["relative_viscosity"]), 1, delta=3e-3)
 
+    @whole_runs
     def test_that_is_plane_is_the_run_in_two(self):
         plane, space = self.run_scene(PLANE, "plane"), self.run_scene(SPACE, "space")
         at_rest = 1e-20  # populations hold half of a step's force, 1e-5 and less, with 16 digits
@@ -174,6 +177,7 @@ class A_run_in_three_dimensions(Case):
             self.assertEqual((frame["points"].shape, frame["triangles"].shape), ((84, 3), (160, 3)))
             self.assertEqual(frame["curvature"].shape, (84,))
 
+    @whole_runs
     def test_of_cells_has_the_same_bits_for_any_number_of_threads_and_when_it_goes_on_after_a_pause(self):
         self.assert_same_bits(changed(SHEARED, numerics__coupling="semi-implicit"), 40, 60, "cells.csv")
 
@@ -190,6 +194,7 @@ class A_run_in_three_dimensions(Case):
         self.assertLess(float(last["wall_gap_m"]), float(without["wall_gap_m"]) - 1e-9)  # held by the wall
         self.assertGreater(float(last["min_gap_m"]), 0)
 
+    @whole_runs
     def test_of_cells_that_attract_each_other_loses_energy_at_rest_and_joins_them(self):
         attraction = [{"between": ["capsule", "capsule"], "model": "morse",
                        "parameters": {"depth": "1e-6 J/m2", "zero_force_distance": "0.5 um", "cutoff": "1.5 um"}}]
@@ -214,6 +219,7 @@ class A_run_in_three_dimensions(Case):
             self.assertGreater(float(contact["contact_area_m2"]), 0)
             self.assertEqual(contact["members"], "0+1")
 
+    @whole_runs
     def test_have_error_bars(self):
         scene = changed(SPACE, domain={"size": ["6 um", "6 um", "6 um"], "nodes": [24, 24, 24], "y": WALLS}, output={"cells": {"seconds": "1 ms"}})
         done = self.rouleau("run", self.write(scene), "--error-bar", "--out", self.folder / "bars")
@@ -223,6 +229,7 @@ class A_run_in_three_dimensions(Case):
         self.assertIsNotNone(flow["error"], flow["how"])
         self.assertRegex(flow["how"], r"lattice .*\((\d+) x \1 x \1 nodes\)")
 
+    @whole_runs
     def test_walls_hold_cells(self):
         scene = changed(SHEARED, stages=[{"name": "rest", "duration": "20 ms", "density_factor": 3000}], output={"cells": {"seconds": "2 ms"}},
                         cells=[{"type": "capsule", "at": ["2 um", "1.1 um", "1.5 um"]}],
@@ -302,6 +309,7 @@ class A_run_in_three_dimensions(Case):
         self.assertEqual(self.rouleau("report", folder).returncode, 0)
         self.assertEqual(self.rouleau("verify", folder).returncode, 0)
 
+    @whole_runs
     def test_opens_as_a_volume(self):
         folder = self.run_scene(changed(SPACE, domain__z=WALLS, output__fields__stride=2), "volume")
         xdmf = (folder / "frames.xmf").read_text()
@@ -310,6 +318,7 @@ class A_run_in_three_dimensions(Case):
         self.assertEqual(self.rouleau("report", folder).returncode, 0)
         self.assertEqual(self.rouleau("verify", folder).returncode, 0)
 
+    @whole_runs
     def test_has_the_same_bits_for_any_number_of_threads_and_when_it_goes_on_after_a_pause(self):
         self.assert_same_bits(changed(SPACE, domain__z=WALLS), 70, 200, "series.csv")
 
@@ -377,6 +386,7 @@ class A_tube(Case):
         self.assertEqual(float(numpy.abs(velocity[solid]).max()), 0)
         self.assertGreater(float(velocity[~solid][:, :, 0].min()), 0)
 
+    @whole_runs
     def test_has_the_same_bits_for_any_number_of_threads_and_when_it_goes_on_after_a_pause(self):
         self.assert_same_bits(TUBE, 35, 90, "series.csv", "cells.csv")
 

@@ -21,7 +21,7 @@ from scene_parts import changed, tube_stl  # noqa: E402
 
 PROGRAM = Path(sys.argv[1]).resolve()
 WITHOUT_WHOLE_RUNS = "--no-whole-runs" in sys.argv  # where the program is ten times slower
-MUTANTS, SEED = 120, 50
+MUTANTS, SEED = 30 if WITHOUT_WHOLE_RUNS else 120, 50
 if "--mutants" in sys.argv:
     wanted = [int(word) for word in sys.argv[sys.argv.index("--mutants") + 1:]]
     MUTANTS, SEED = (wanted + [SEED])[:2]

@@ -1,7 +1,9 @@
 // What the tests of blocks and ranks share: scenes, cuts, and ranks that are threads.
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -231,6 +233,15 @@ std::vector<Cut<D>> cuts_of(const core::Domain<D>& domain, int cells) {
     cuts.push_back(std::move(cut));
   }
   return cuts;
+}
+
+/// Three of these, others in each run of the tests: all take so long that few scenes could be tried.
+template <int D>
+std::vector<Cut<D>> some_cuts_of(const core::Domain<D>& domain, int cells) {
+  std::vector<Cut<D>> all = cuts_of(domain, cells), some;
+  auto random = generator(static_cast<unsigned>(std::random_device()()));
+  std::sample(all.begin(), all.end(), std::back_inserter(some), 3, random);
+  return some;
 }
 
 /// ROULEAU_BLOCK_STEPS=2000 for a long look (docs/testing.md).

@@ -127,7 +127,7 @@ void check(const Flow& flow) {
     for (const std::size_t bytes : {std::size_t{1}, std::size_t{3000}, std::size_t{40000}}) {
       CAPTURE(bytes);
       CHECK((planned.observe(domain, {}, bytes) == expected));
-      for (const Cut<D>& cut : cuts_of(domain, 0)) {
+      for (const Cut<D>& cut : some_cuts_of(domain, 0)) {
         if (cut.blocks.ranks() == 1) continue;
         CAPTURE(cut.what);
         std::map<std::string, std::vector<double>> found;

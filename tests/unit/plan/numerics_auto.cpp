@@ -55,7 +55,8 @@ TEST_CASE("a smaller target error costs more, and the error that is expected is 
 
 TEST_CASE(
     "a smaller target is not cheaper, whichever stage has a density factor of its own, and its lattice is not "
-    "coarser") {
+    "coarser",
+    "[optimised]") {
   const std::string demo = "/../../../scenes/four-cells-shear.json", at_rest = "/stages/0/start=impulsive";
   struct Case {
     std::string scene;
@@ -310,8 +311,8 @@ const std::vector<std::string> in_tube{
 
 }  // namespace
 
-TEST_CASE(
-    "in three dimensions a smaller target costs more on a lattice that is not coarser, and its error is below it") {
+TEST_CASE("in three dimensions a smaller target costs more on a lattice that is not coarser, and its error is below it",
+          "[optimised]") {
   const std::string shape = "/cell_types/capsule/shape=", wide = R"(["24 um", "18 um", "12 um"])",
                     walls = R"("y": {"lower": {"wall": {}}, "upper": {"wall": {}}})",
                     inside = R"(/cells/0/at=["12 um", "9 um", "6 um"])";
@@ -481,7 +482,7 @@ TEST_CASE("without a lattice that fits three sides auto says what to write, and 
   }
 }
 
-TEST_CASE("cells at random in a tube are no reason to refuse numerics that are left open") {
+TEST_CASE("cells at random in a tube are no reason to refuse numerics that are left open", "[optimised]") {
   const std::string tube = std::string(ROULEAU_SCENES) + "/../tests/physics/scenes/auto-capsule-3d.json";
   const std::vector<std::string> changes{
       R"(/domain={"size": ["20 um", "10 um", "10 um"], "walls": {"tube": {"axis": "x", "radius": "5 um"}}})",

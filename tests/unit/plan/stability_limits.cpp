@@ -54,8 +54,8 @@ TEST_CASE("limits know the relaxation times of layers, and a driven channel its 
   CHECK(explicit_margin(plan.facts) < explicit_margin(make_plan(plain, catalog).facts));
 }
 
-TEST_CASE(
-    "a plan in three dimensions says what leaks: of a strain of 1 where it is put back, else of all of the stage") {
+TEST_CASE("a plan in three dimensions says what leaks: of a strain of 1 where it is put back, else of all of the stage",
+          "[optimised]") {
   const Catalog catalog({ROULEAU_PLUGINS});
   const auto leak = [&](const std::string& begin, std::vector<std::string> overrides) {
     overrides.emplace_back("/numerics/density_factor=10");

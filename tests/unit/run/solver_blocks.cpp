@@ -254,13 +254,13 @@ void compare_cuts(const Case& c, const std::vector<Cut<Set::dimension>>& cuts, c
   }
 }
 
-/// `look`: every so many steps all ranks tell each other everything. `cuts`: none: all kinds; else cells travel over them,
+/// `look`: every so many steps all ranks tell each other everything. `cuts`: none: some of all; else cells travel over them,
 /// and change hands.
 template <class Set>
 void compare_cuts(const Case& c, long steps, long look = 1000, std::vector<Cut<Set::dimension>> cuts = {}) {
   const bool travel = !cuts.empty() && steps > look;
   const Planned<Set::dimension> planned(c);
-  if (cuts.empty()) cuts = cuts_of(planned.setup.domain, planned.cells.cell_count());
+  if (cuts.empty()) cuts = some_cuts_of(planned.setup.domain, planned.cells.cell_count());
   if (planned.scene.numerics.precision == scene::Precision::f64) {
     compare_cuts<double, Set>(c, cuts, planned, steps, look, travel);
   } else {

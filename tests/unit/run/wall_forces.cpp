@@ -265,7 +265,7 @@ TEST_CASE("beside a wall that moves what walls put in is what viscosity takes an
   }
 }
 
-TEST_CASE("in dense suspensions that attract the viscosity by walls is that by particles") {
+TEST_CASE("in dense suspensions that attract the viscosity by walls is that by particles", "[optimised]") {
   const std::string shear20 =
       R"(/stages=[{"name": "shear", "shear_rate": "20 1/s", "strain": 5, "start": "developed"}])";
   Case plane = beside_wall("2D, attracting", {shear20, thick});

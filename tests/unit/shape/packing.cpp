@@ -140,7 +140,8 @@ TEST_CASE("a seed packs the same bits on every machine") {
   CHECK(hash.value() == 0xca1fb4f7a0dfca19U);
 }
 
-TEST_CASE("500 cells fill 40 % of a channel, and no direction of the box is preferred where there are no walls") {
+TEST_CASE("500 cells fill 40 % of a channel, and no direction of the box is preferred where there are no walls",
+          "[optimised]") {
   for (const bool periodic : {false, true}) {
     Packed packed(1024, 416, periodic);
     const double seconds = packed.hematocrit(0, 0.4, 3, 0.3e-6).seconds_of_run();
@@ -162,7 +163,7 @@ TEST_CASE("500 cells fill 40 % of a channel, and no direction of the box is pref
   }
 }
 
-TEST_CASE("at a low hematocrit centres and angles are uniform") {
+TEST_CASE("at a low hematocrit centres and angles are uniform", "[optimised]") {
   Packed packed(1500, 1500, true);
   packed.hematocrit(0, 0.1, 5, 0.2e-6).run();  // 661 cells
   REQUIRE_FALSE(packed.shortfall);

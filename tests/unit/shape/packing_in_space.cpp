@@ -160,7 +160,7 @@ TEST_CASE("cells packed in space keep their gap from each other, from images and
   CHECK(std::abs(enclosed - share * domain.content()) <= 0.5 * cell * (1 + 1e-6));
 }
 
-TEST_CASE("the same seed packs the same cells in space and another seed others") {
+TEST_CASE("the same seed packs the same cells in space and another seed others", "[optimised]") {
   Packed one({40, 40, 40}, false, true), same = one, other = one;
   one.hematocrit(0, 0.2, 11, 0.3e-6).run();
   same.hematocrit(0, 0.2, 11, 0.3e-6).run();
@@ -169,7 +169,7 @@ TEST_CASE("the same seed packs the same cells in space and another seed others")
   CHECK(hash_of(one.scene) != hash_of(other.scene));
 }
 
-TEST_CASE("at a low hematocrit places, axes and angles are uniform in space") {
+TEST_CASE("at a low hematocrit places, axes and angles are uniform in space", "[optimised]") {
   Packed packed({300, 300, 300}, true, true);
   packed.count(0, 600, 5, 0.5e-6).run();  // 1.7 %
   REQUIRE_FALSE(packed.shortfall);
@@ -200,7 +200,7 @@ TEST_CASE("a seed packs the same bits in space on every machine") {
   CHECK(hash_of(packed.scene) == 0x105474e761ec90b5U);
 }
 
-TEST_CASE("moves keep axes uniform in space", "[many-cells]") {
+TEST_CASE("moves keep axes uniform in space", "[optimised]") {
   // At this hematocrit cells are placed smaller, and grow while they are moved.
   Packed packed({120, 120, 120}, true, true);
   packed.hematocrit(0, 0.25, 3, 0.2e-6);
@@ -235,7 +235,7 @@ TEST_CASE("other cells are obstacles in space and several packings share the roo
   CHECK(smallest_gap_of_all(spheres, 0.8e-6) >= 0.4e-6);
 }
 
-TEST_CASE("no cell is packed into a larger one, nor around a smaller one", "[many-cells]") {
+TEST_CASE("no cell is packed into a larger one, nor around a smaller one", "[optimised]") {
   Packed packed({48, 48, 48}, true, true, {Sphere{9 * um}, Sphere{1 * um}});
   packed.scene.cells.push_back({0, {12 * um, 12 * um, 12 * um}, 0, "/cells"});
   packed.count(1, 200, 4, 0.1e-6).run();
@@ -333,7 +333,7 @@ TEST_CASE("a box in which a cell meets its own images in space is packed too") {
   CHECK(smallest_gap_of_all(packed.scene, 0.6e-6) >= 0.3e-6);
 }
 
-TEST_CASE("what does not fit in space is said, with the hematocrit that was reached") {
+TEST_CASE("what does not fit in space is said, with the hematocrit that was reached", "[optimised]") {
   Packed packed({24, 24, 24}, false, false);
   const double seconds = packed.hematocrit(0, 0.8, 1, 0.3e-6).seconds_of_run();
   std::cout << packed.scene.cells.size() << " cells that do not fit: " << seconds << " s\n";

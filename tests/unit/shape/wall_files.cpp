@@ -131,7 +131,7 @@ TEST_CASE("a picture as long as a period goes on with itself, and ends where it 
              Contains("nothing in the picture is lighter than half grey") && Contains("\"dark\""));
 }
 
-TEST_CASE("pictures in space: one for all heights, and a stack that rebuilds a ball") {
+TEST_CASE("pictures in space: one for all heights, and a stack that rebuilds a ball", "[optimised]") {
   const Scenes scenes;
   std::string files;
   for (int k = 0; k < 20; ++k) {
@@ -155,7 +155,8 @@ TEST_CASE("pictures in space: one for all heights, and a stack that rebuilds a b
       Contains("/image/file/3") && Contains("another size"));
 }
 
-TEST_CASE("a vessel from a mesh has the distances of what it was made of, through periodic ends as well") {
+TEST_CASE("a vessel from a mesh has the distances of what it was made of, through periodic ends as well",
+          "[optimised]") {
   const Scenes scenes;
   const std::string mesh = R"({"mesh": {"file": "vessel.off", "unit": "1 um", "at": ["0 um", "10 um", "10 um"]}})";
   for (const bool closed : {true, false}) {
@@ -174,7 +175,7 @@ TEST_CASE("a vessel from a mesh has the distances of what it was made of, throug
   CHECK(distance(ball, 20, 10, 10) == Approx(-12).margin(0.1));
 }
 
-TEST_CASE("a mesh is turned by its axis and angle as cells are") {
+TEST_CASE("a mesh is turned by its axis and angle as cells are", "[optimised]") {
   const Scenes scenes;
   core::TriangleSurface box = core::ellipsoid(6, {6, 3, 4});
   scenes.folder.write("box.off", off(box));

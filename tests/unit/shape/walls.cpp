@@ -47,7 +47,7 @@ TEST_CASE("a disc between plane walls leaves the rest of them, at its distance a
   CHECK(scene.domain.region_width == Approx(20 * um).epsilon(0.01));  // from wall to wall, far from the disc
 }
 
-TEST_CASE("a cylinder along x is a tube, with ends or without") {
+TEST_CASE("a cylinder along x is a tube, with ends or without", "[optimised]") {
   const std::string round =
       R"("walls": {"within": {"cylinder": {"axis": "x", "center": ["10 um", "10 um"], "radius": "8 um")";
   const auto scene = scene_with(space + round + "}}}"),

@@ -167,7 +167,7 @@ TEST_CASE("shifting and scaling the values shifts and scales the limit", "[richa
   }
 }
 
-TEST_CASE("the limit lies within the uncertainty in at least 95 of 100 random series", "[richardson][statistics]") {
+TEST_CASE("the limit lies within the uncertainty in at least 95 of 100 random series", "[richardson][optimised]") {
   std::mt19937_64 random(1);
   const std::size_t count = GENERATE(std::size_t{3}, std::size_t{4}, std::size_t{6});
   // The second term is up to this part of the first on the coarsest grid: at 0.8 the error hardly grows any more there.
