@@ -61,7 +61,7 @@ TEST_CASE("auto meets the target error of a turning biconcave cell", "[auto]") {
   }
 }
 
-TEST_CASE("auto meets the target error of a steady capsule in three dimensions", "[auto][space]") {
+TEST_CASE("auto meets the target error of a steady capsule in three dimensions", "[auto][space][weekly]") {
   // Own boundary integral without bending, on 1 442 nodes, and what the box of 8 radii adds (docs/three-dimensions.md).
   constexpr double deformation = 1.012 * 0.2717, angle = 0.172 * std::numbers::pi;
   const double target = GENERATE(0.05, 0.02);

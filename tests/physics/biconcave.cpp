@@ -10,7 +10,7 @@ using namespace rouleau::study;
 using namespace rouleau::test;
 
 TEST_CASE("the biconcave cell at 20/s first passes -90 degrees at the reference's strain, whatever the number of nodes",
-          "[biconcave]") {
+          "[biconcave][weekly]") {
   const double reference = read_reference("biconcave_channel.json")[0]["crossing_times"]["-90"][0];
   double passages[2];
   for (const int fine : {0, 1}) {

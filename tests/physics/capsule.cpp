@@ -138,7 +138,7 @@ TEST_CASE("with the slip correction the capsule's deformation converges to secon
 }
 
 TEST_CASE("the plain scheme slips: to first order in the spacing the capsule thickens the fluid too much",
-          "[capsule]") {
+          "[capsule][weekly]") {
   const Capsule coarse{0.05, 1, 10, false}, fine{0.05, 1, 20, false};
   const double at_10 = compare(coarse, run_capsule(coarse)).viscosity;
   const double at_20 = compare(fine, run_capsule(fine)).viscosity;

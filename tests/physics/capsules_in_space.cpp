@@ -70,7 +70,8 @@ TEST_CASE("capsules in three dimensions deform and turn as the boundary integral
   CHECK(run.summary["conservation"]["momentum_residual"].get<double>() < 1e-10);
 }
 
-TEST_CASE("without bending a capsule's deformation comes to the boundary integral's with the spacing", "[space]") {
+TEST_CASE("without bending a capsule's deformation comes to the boundary integral's with the spacing",
+          "[space][weekly]") {
   // Neo-Hookean, Ca 0.15: own boundary integral on 1 442 nodes; the box 8 radii wide adds 0.9 %
   // (docs/three-dimensions.md).
   constexpr double in_the_box = 1.009 * 0.2717;

@@ -239,7 +239,7 @@ TEST_CASE("two discs that attract hold the Derjaguin integral of their potential
   CHECK(std::abs(errors[2]) < std::abs(errors[0]) / 10);  // polygons: second order
 }
 
-TEST_CASE("at rest the total energy of cells that attract never grows", "[energy]") {
+TEST_CASE("at rest the total energy of cells that attract never grows", "[energy][weekly]") {
   const bool semi_implicit = GENERATE(false, true);
   const SceneRun run = run_scene(
       scenes + "/viscous-ring.json",

@@ -8,7 +8,7 @@
 using namespace rouleau::test;
 
 TEST_CASE("at 1.3e-6 J/m2 and 50/s a rouleau parts into two pairs with inertia at Re 3.5, and never without",
-          "[paper]") {
+          "[paper][weekly]") {
   const bool inertia = GENERATE(true, false);
   const SceneRun run =
       run_scene(std::string(ROULEAU_SCENES) + "/paper/fig6-inertia.json",

@@ -97,7 +97,8 @@ TEST_CASE("an area law presses on the fluid inside with its modulus times the ch
   CHECK(std::abs(excess) < 1e-3);
 }
 
-TEST_CASE("an elliptic disturbance of a pre-stretched ring decays as the boundary-integral solution", "[ring]") {
+TEST_CASE("an elliptic disturbance of a pre-stretched ring decays as the boundary-integral solution",
+          "[ring][weekly]") {
   const nlohmann::json tables = read_reference("analytic.json")["relaxation_tables"];
   // A Stokes flow is asked for: tension waves must be slow against diffusion over the cell, Es a / (nu^2) small.
   const double amplitude = 0.1;

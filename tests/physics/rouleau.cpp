@@ -31,7 +31,7 @@ int aggregates_at(const SceneRun& run, double strain) {
 
 }  // namespace
 
-TEST_CASE("without attraction four cells in shear end as four single cells", "[rouleau]") {
+TEST_CASE("without attraction four cells in shear end as four single cells", "[rouleau][weekly]") {
   // Cells that only pass each other come close on the way (gaps down to 0.45 um until strain 22): the end state counts.
   const SceneRun run = run_scene(four_cells, {R"(/interactions/0/parameters/depth="0 J/m2")", "/stages/1/strain=30"});
   report("De 0", run);

@@ -102,7 +102,7 @@ struct SmallDeformation {
 
 }  // namespace
 
-TEST_CASE("a stretched ring comes back at the rate that membrane viscosity leaves it", "[viscous]") {
+TEST_CASE("a stretched ring comes back at the rate that membrane viscosity leaves it", "[viscous][weekly]") {
   struct Case {
     double viscosity;       // over mu a
     double density_factor;  // inertia must be small against the rate

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Runs `rouleau plan` on every broken scene of FOLDER/cases.json; each must be refused at its place and for its reason.
 
-Usage: check_bad_scenes.py ROULEAU FOLDER
+Usage: check_bad_scenes.py ROULEAU FOLDER [--every N]
+--every: each N-th case, from a random one on, which is printed.
 A case is the scene base.json, which is good, with a change, or a whole scene:
   change   {"text that stands once in the scene": "what stands in its place", ...}
   scene    the text of the whole file instead
@@ -16,6 +17,7 @@ that is no UTF-8, 0xE9 for instance, is written \\udce9. The exit code is 2 in e
 """
 import json
 import pathlib
+import random
 import subprocess
 import sys
 import tempfile
@@ -74,10 +76,12 @@ def faults(program: pathlib.Path, folder: pathlib.Path, name: str, case: dict, b
 
 
 def main() -> int:
-    if len(sys.argv) != 3:
+    if len(sys.argv) != 3 and sys.argv[3:4] != ["--every"]:
         print(__doc__, file=sys.stderr)
         return 2
-    program, source = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
+    program, source = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
+    every = int(sys.argv[4]) if sys.argv[3:] else 1
+    first = random.randrange(every)
     base = (source / "base.json").read_text()
     cases = json.loads((source / "cases.json").read_text())
     failed = 0
@@ -87,12 +91,12 @@ def main() -> int:
         if code != 0:
             failed += 1
             print(f"base.json is not good: exit code {code}\n{answer}")
-        for name, case in cases.items():
+        for name, case in list(cases.items())[first::every]:
             found = faults(program, folder, name, case, base)
             if found:
                 failed += 1
                 print("\n  ".join([name, *found]).encode(errors="backslashreplace").decode())
-    print(f"{len(cases)} cases, {failed} failed")
+    print(f"{len(cases)} cases, each {every}. from {first} on, {failed} failed")
     return 1 if failed or not cases else 0
 
 
