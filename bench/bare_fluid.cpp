@@ -107,7 +107,8 @@ void BareFluid<T>::set(const std::function<double(int, int, int)>& population) {
 template <class T>
 double BareFluid<T>::population(int q, int x, int y) const {
   const T* in[9];
-  lattice_.row_pointers(parity_, {y}, in);
+  T* out[9];
+  lattice_.row_pointers(parity_, {y}, 0, in, out);
   return static_cast<double>(in[q][x]);
 }
 
@@ -121,10 +122,10 @@ void BareFluid<T>::step(rouleau::Range rows) {
   for (int i = 0; i < rows.end - rows.begin; ++i) {
     const int y = parity_ == core::Parity::even ? rows.begin + i : rows.end - 1 - i;
     if (parity_ == core::Parity::even) receive_row(lattice_, {y});
-    lattice_.row_pointers(parity_, {y}, task.in, task.out);
+    lattice_.row_pointers(parity_, {y}, 0, task.in, task.out);
     if (force_[0].allocated()) task.force_x = force_[0].row(y), task.force_y = force_[1].row(y);
     row(&task);
-    add_wall_momentum(lattice_, {y}, walls_);
+    add_wall_momentum(lattice_, y, {y}, walls_);
     if (parity_ == core::Parity::even) send_row(lattice_, {y});
     if (force_[0].allocated()) fill_velocity_halo<T, 2>(force_, {y}, lattice_.domain(), walls_);
   }

@@ -131,7 +131,7 @@ class BareSpace {
     for (int k = 0; k < rows.end - rows.begin; ++k) {
       const auto row = lattice_.row(even ? rows.begin + k : rows.end - 1 - k);
       if (k == 0) {
-        lattice_.row_pointers(parity_, row, task_.in, task_.out);
+        lattice_.row_pointers(parity_, row, 0, task_.in, task_.out);
       } else {
         lattice_.next_row_pointers(parity_, last, row, task_.in, task_.out);
       }

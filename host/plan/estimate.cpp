@@ -215,15 +215,15 @@ void require_memory(double bytes, const std::string& what) {
 
 Estimate estimate(const Plan& plan) {
   const scene::Scene& scene = *plan.scene;
-  const double nodes = scene.domain.node_count();
+  const double nodes = scene::fluid_nodes(scene.domain);
   const int dimension = scene.domain.dimension(), velocities = cost::velocities[dimension - 2];
   const double membrane = membrane_nodes(scene);
   const double word = scene.numerics.precision == scene::Precision::f64 ? 8 : 4;
   Estimate estimate;
   for (const scene::StageSetting& stage : plan.stages) estimate.steps += static_cast<double>(stage.max_steps);
-  estimate.wall_s = estimate.steps * (step_cost(scene::fluid_nodes(scene.domain), membrane, scene.numerics.precision,
-                                                dimension, membrane_scheme(plan)) +
-                                      cost_of_rows(scene));
+  estimate.wall_s =
+      estimate.steps *
+      (step_cost(nodes, membrane, scene.numerics.precision, dimension, membrane_scheme(plan)) + cost_of_rows(scene));
   estimate.memory_bytes = nodes * word *
                               (velocities + (plan.has_cells ? dimension : 0) +
                                (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +

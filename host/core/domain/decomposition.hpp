@@ -55,16 +55,21 @@ class Decomposition {
     const Decomposition* blocks = nullptr;
     std::vector<double> factor = {};
   };
+  /// Some of the nodes that are not solid, all over the lattice; each stands for so many. None: all nodes are fluid.
+  struct Fluid {
+    std::vector<std::array<int, D>> nodes = {};
+    double each = 0;
+  };
   /// As many blocks as wanted, by cutting what is left again and again, where the border costs least, so that both
-  /// parts cost what the numbers of their blocks ask for: a node 1, and each of the points `point_cost` more. Along the
+  /// parts cost what the numbers of their blocks ask for: a fluid node 1, each point `point_cost` more. Along the
   /// first axis cuts lie at multiples of 16 nodes where there is room for that. Throws std::invalid_argument for more
   /// blocks than blocks of 16 nodes have room.
   static Decomposition bisected(const Domain<D>& whole, int ranks, const std::vector<std::array<int, D>>& points = {},
-                                double point_cost = 0, const Measured& measured = {}) {
+                                double point_cost = 0, const Measured& measured = {}, const Fluid& fluid = {}) {
     if (ranks < 1 || whole.nodes() / least_nodes < ranks)
       throw std::invalid_argument("more blocks than there is room for");
     std::vector<Box<D>> blocks;
-    bisect({{}, whole.size}, ranks, points, point_cost, measured, blocks);
+    bisect({{}, whole.size}, ranks, points, point_cost, measured, fluid, blocks);
     return {whole, std::move(blocks)};
   }
   static constexpr long least_nodes = 16;  ///< of a block, by bisection
@@ -135,14 +140,20 @@ class Decomposition {
     std::vector<long> points;
   };
   static Slices slices_of(const Box<D>& box, int axis, const std::vector<std::array<int, D>>& points, double point_cost,
-                          const Measured& measured) {
+                          const Measured& measured, const Fluid& fluid) {
     const auto size = static_cast<std::size_t>(box.size(axis));
     Slices slices{std::vector<double>(size), std::vector<long>(size)};
     const auto add = [&](const Box<D>& part, double factor) {
       const double slice = static_cast<double>(volume(part)) / part.size(axis) * factor;
       for (int i = part.begin[axis]; i < part.end[axis]; ++i) slices.cost[i - box.begin[axis]] += slice;
     };
-    if (measured.blocks == nullptr) {
+    const auto factor_at = [&](const std::array<int, D>& node) {
+      return measured.blocks == nullptr ? 1 : measured.factor[measured.blocks->owner(node)];
+    };
+    if (!fluid.nodes.empty()) {
+      for (const auto& node : fluid.nodes)
+        if (box.contains(node)) slices.cost[node[axis] - box.begin[axis]] += fluid.each * factor_at(node);
+    } else if (measured.blocks == nullptr) {
       add(box, 1);
     } else {
       for (const int rank : measured.blocks->meeting(box))
@@ -150,8 +161,7 @@ class Decomposition {
     }
     for (const auto& point : points) {
       const int i = point[axis] - box.begin[axis];
-      const double factor = measured.blocks == nullptr ? 1 : measured.factor[measured.blocks->owner(point)];
-      slices.cost[i] += point_cost * factor;
+      slices.cost[i] += point_cost * factor_at(point);
       ++slices.points[i];
     }
     return slices;
@@ -195,7 +205,7 @@ class Decomposition {
     return place;
   }
   static void bisect(const Box<D>& box, int parts, std::vector<std::array<int, D>> points, double point_cost,
-                     const Measured& measured, std::vector<Box<D>>& blocks) {
+                     const Measured& measured, const Fluid& fluid, std::vector<Box<D>>& blocks) {
     if (parts == 1) {
       blocks.push_back(box);
       return;
@@ -205,7 +215,7 @@ class Decomposition {
     double least = INFINITY;
     for (int k = 0; k < D; ++k) {
       if (box.size(k) < 2) continue;
-      const Slices slices = slices_of(box, k, points, point_cost, measured);
+      const Slices slices = slices_of(box, k, points, point_cost, measured, fluid);
       const Place place = place_of_cut(box, k, lower_parts, upper_parts, slices.cost);
       const double cost = place.off_share + border_cost(box, k, place.at, slices.points, point_cost, parts);
       if (at == 0 || cost <= least) least = cost, axis = k, at = place.at;
@@ -214,8 +224,8 @@ class Decomposition {
     lower.end[axis] = upper.begin[axis] = box.begin[axis] + at;
     std::vector<std::array<int, D>> below, above;
     for (const auto& point : points) (lower.contains(point) ? below : above).push_back(point);
-    bisect(lower, lower_parts, std::move(below), point_cost, measured, blocks);
-    bisect(upper, upper_parts, std::move(above), point_cost, measured, blocks);
+    bisect(lower, lower_parts, std::move(below), point_cost, measured, fluid, blocks);
+    bisect(upper, upper_parts, std::move(above), point_cost, measured, fluid, blocks);
   }
   Domain<D> whole_;
   std::vector<Box<D>> blocks_;

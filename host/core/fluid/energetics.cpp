@@ -129,13 +129,11 @@ template <class T, class Set>
 void find_velocities(const FluidState<T, Set>& state, int i, const std::array<double*, Set::dimension>& u) {
   using Task = VelocityTask<T, Set>;
   static const auto function = Dispatch<FindVelocity<T, Set>, const Task*>::pick();
-  const T* in[Set::velocity_count];
   const auto row = state.lattice.row(i);
-  state.lattice.row_pointers(state.parity, row, in);
   state.mask.for_solid(i, [&](int begin, int end) {
     for (double* component : u) std::fill(component + begin, component + end, 0.0);
   });
-  state.mask.for_spans(i, [&](const MaskSpan& span) {
+  state.for_spans(i, [&](const MaskSpan& span, const auto& in) {
     Task task{};
     task.count = span.end - span.begin;
     for (int q = 0; q < Set::velocity_count; ++q) task.in[q] = in[q] + span.begin;
@@ -152,14 +150,12 @@ void find_velocities(const FluidState<T, Set>& state, int i, const std::array<do
   }
 }
 
-/// The rows of velocities around a row, and its populations.
+/// The rows of velocities around a row.
 template <class T, class Set>
 EnergyTask<T, Set> energy_task(const FluidState<T, Set>& state, VelocityRows<Set::dimension>& rows,
                                const typename FluidState<T, Set>::Row& row) {
   constexpr int dimension = Set::dimension;
   EnergyTask<T, Set> task{};
-  task.count = state.nx();
-  state.lattice.row_pointers(state.parity, row, task.in);
   for (int place = 0; place < RowsAround<Set>::count; ++place) {
     auto beside = row;
     bool wall = false;
@@ -278,29 +274,28 @@ void EnergySum<T, Set>::add(int i) {
   task.dissipation = &sums_[dissipation];
   const std::array<double*, dimension> u = rows_.row(row);
   velocity_along_x_ = u[0];
-  if (!state_.links) {
-    function(&task);
-  } else {
-    state_.mask.for_fluid(i, [&](int begin, int end) {
-      Task part = task;
-      part.count = end - begin;
-      for (const T*& in : part.in) in += begin;
-      for (auto& beside : part.velocity) {
-        for (const double*& component : beside) component += component != nullptr ? begin : 0;
-      }
-      function(&part);
-    });
-    // A link into a wall counts with what left, too; beyond plane walls that has been taken for what came back, and for
-    // what a wall that moves has given.
-    state_.links->for_links(i, [&](int x, int q, const auto& link, bool plane) {
-      const auto& c = Set::velocity[q];
+  state_.for_fluid(i, [&](int begin, int end, const auto& in) {
+    Task part = task;
+    part.count = end - begin;
+    for (int q = 0; q < velocity_count; ++q) part.in[q] = in[q] + begin;
+    for (auto& beside : part.velocity) {
+      for (const double*& component : beside) component += component != nullptr ? begin : 0;
+    }
+    function(&part);
+  });
+  // A link into a wall counts with what left, too; beyond plane walls that has been taken for what came back, and for
+  // what a wall that moves has given.
+  state_.for_links(i, [&](std::size_t piece, const auto& at) {
+    for (const auto& link : state_.links->of_piece(piece)) {
+      const auto& c = Set::velocity[link.q];
       double change = 0;
-      for (int k = 0; k < dimension; ++k) change += c[k] * u[k][x];
-      const double f = static_cast<double>(task.in[q][x]), speed = plane ? c[0] * task.wall_speed[1 - c[1]] : 0;
-      sums_[dissipation].add(-(plane ? link.left - f : link.left) * change);
-      if (speed != 0) sums_[dissipation].add(-(2 * f + 6 * Set::weight[q] * (change - speed)) * speed);
-    });
-  }
+      for (int k = 0; k < dimension; ++k) change += c[k] * u[k][link.x];
+      const double f = static_cast<double>(at.in[link.q][link.x]), left = static_cast<double>(link.left);
+      const double speed = link.plane ? c[0] * task.wall_speed[1 - c[1]] : 0;
+      sums_[dissipation].add(-(link.plane ? left - f : left) * change);
+      if (speed != 0) sums_[dissipation].add(-(2 * f + 6 * Set::weight[link.q] * (change - speed)) * speed);
+    }
+  });
   if (state_.setting.membranes) add_membrane_power(i, u);
 }
 

@@ -20,14 +20,14 @@ class Field {
   static constexpr int halo = 3;  ///< what a kernel of six points needs
 
   Field() = default;
-  /// All values zero.
-  explicit Field(const std::array<int, D>& size, int place = 0) : size_(size) {
+  /// All values zero. `in_parts`: most of them will stay so, and take little memory.
+  explicit Field(const std::array<int, D>& size, int place = 0, bool in_parts = false) : size_(size) {
     stride_[0] = 1;
     stride_[1] = (((size[0] + 2 * halo + line - 1) / line) | 1) * line;
     for (int k = 2; k < D; ++k) stride_[k] = stride_[k - 1] * (size[k - 1] + 2 * halo);
     const std::ptrdiff_t count = stride_[D - 1] * (size[D - 1] + 2 * halo);
     const int before = (1 + 21 * place) * line;  // thirds of 4096 bytes
-    storage_ = Storage<T>(static_cast<std::size_t>(count) + before);
+    storage_ = Storage<T>(static_cast<std::size_t>(count) + before, in_parts);
     origin_ = storage_.data() + before;
     for (int k = 1; k < D; ++k) origin_ += halo * stride_[k];
   }

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <rouleau/dispatch.hpp>
 #include <type_traits>
 
 #include "fluid_observers.hpp"
-#include "moving_frame.hpp"
 #include "periodic.hpp"
 
 namespace rouleau::core {
@@ -57,25 +55,26 @@ void Fluid<T, Set>::clear_force(Range rows) {
     }
   };
   for (int i = rows.begin; i < rows.end; ++i) {
-    const Row row = state_.lattice.row(i);
     state_.mask.for_spans(i, [&](const MaskSpan& span) {
       if (!span.active) return;
+      const Row row = state_.lattice.row(i);
       for (int k = 0; k < dimension; ++k) set(state_.force[k].row(row), span, static_cast<T>(setting_.body_force[k]));
     });
   }
 }
 
 template <class T, class Set>
-void Fluid<T, Set>::collide_row(int i, const Row& row, Call& call) {
+void Fluid<T, Set>::collide(const RowPiece& piece, const Row& row, Call& call) {
   const bool layer = state_.in_layer(row);
   int at = 0;  // where the pointers stand
   const auto move_to = [&](int x) {
     if (x == at) return;
-    Set::for_each_velocity([&](auto q) { call.in[q] += x - at, call.out[q] += x - at; });
+    Set::for_each_velocity([&](auto q) { call.at.in[q] += x - at, call.at.out[q] += x - at; });
     at = x;
   };
   Block& block = call.block;
-  state_.mask.for_spans(i, [&](const MaskSpan& span) {
+  state_.mask.for_spans(piece.row, [&](const MaskSpan& span) {
+    if (span.begin < piece.begin || span.begin >= piece.end) return;
     move_to(span.begin);
     block.count = static_cast<std::uint32_t>(span.end - span.begin);
     const bool active = state_.has_force(span);
@@ -94,7 +93,7 @@ void Fluid<T, Set>::collide_row(int i, const Row& row, Call& call) {
 template <class T, class Set>
 void Fluid<T, Set>::fetch_row(int i, const Call& call, const Row& from) const {
   const Row row = state_.lattice.row(i);
-  state_.lattice.fetch_row(call.in, from, row);
+  state_.lattice.fetch_row(call.at.in, from, row);
   if (!setting_.membranes || !state_.mask.any(i)) return;
   for (const auto& component : state_.force) fetch(component.row(row), state_.nx());
 }
@@ -108,60 +107,52 @@ void Fluid<T, Set>::rest_solid(int i, const Row& row) {
 }
 
 template <class T, class Set>
-void Fluid<T, Set>::add_moving_frame(int i, const Row& row, T* (&out)[velocity_count]) {
-  if constexpr (dimension == 2) {
-    static const auto function = Dispatch<AddMovingFrame, const MovingFrameTask<T>*>::pick();
-    const auto of = [](const std::array<double, 2>& values, T(&to)[2]) {
-      for (int k = 0; k < 2; ++k) to[k] = static_cast<T>(values[k]);
-    };
-    MovingFrameTask<T> task{};
-    task.rate = static_cast<T>(state_.rate_of_row(row));
-    of(setting_.body_force, task.body_force);
-    of(state_.frame, task.frame);
-    state_.mask.for_spans(i, [&](const MaskSpan& span) {
-      const bool active = state_.has_force(span);
-      Set::for_each_velocity([&](auto q) { task.out[q] = out[q] + span.begin; });
-      for (int k = 0; k < 2; ++k) task.velocity[k] = active ? state_.force[k].row(row) + span.begin : nullptr;
-      task.relaxation_rate =
-          active && setting_.viscosity_contrast ? state_.relaxation_rate.row(row) + span.begin : nullptr;
-      task.count = span.end - span.begin;
-      function(&task);
-    });
-  }
+void Fluid<T, Set>::step_piece(const RowPiece& piece, std::size_t number, const Row& row, Call& call) {
+  const int i = piece.row;
+  if (state_.openings) state_.openings->before_step(state_.parity, i);
+  if (state_.links) state_.links->before_step(number, call.at.out);
+  if (state_.openings) state_.openings->before_collision(i, call.at.in);
+  collide(piece, row, call);
+  if (state_.links) state_.links->after_step(number, call.at.out);
+  if (state_.frame != std::array<double, dimension>{}) state_.add_moving_frame(piece, row, call.at.out);
+  if (state_.openings) state_.openings->after_step(i, call.at.out);
 }
 
 template <class T, class Set>
 void Fluid<T, Set>::step(Range rows) {
   const bool even = state_.parity == Parity::even;
-  const bool frame_moves = state_.frame != std::array<double, dimension>{};
   Call call;
   call.block = {};
   call.block.struct_size = sizeof(Block);
-  call.block.in = call.in, call.block.out = call.out;
+  call.block.in = call.at.in, call.block.out = call.at.out;
   for (int k = 0; k < dimension; ++k) call.body_force[k] = body_force_row_[k].data();
   call.background = body_force_row_[0].empty() ? nullptr : call.body_force;
   Row last{};
+  const RowPieces<dimension>& pieces = state_.lattice.pieces();
   const bool fetches = state_.lattice.fetches_ahead();
   const int count = rows.end - rows.begin, first = even ? rows.begin : rows.end - 1, way = even ? 1 : -1;
   for (int k = 0; k < count; ++k) {
     const int i = first + way * k;
+    if (state_.links && pieces.first_piece(i) == pieces.first_piece(i + 1) && !state_.mask.marked(i)) continue;
     const Row row = state_.lattice.row(i);
-    if (k == 0) {
-      state_.lattice.row_pointers(state_.parity, row, call.in, call.out);
-    } else {
-      state_.lattice.next_row_pointers(state_.parity, last, row, call.in, call.out);
-    }
-    last = row;
     if (even) receive_row(state_.lattice, row);
-    if (state_.openings) state_.openings->before_step(state_.parity, i);
-    if (state_.links) state_.links->before_step(state_.parity, i);
-    if (state_.openings) state_.openings->before_collision(i, call.in);
-    if (fetches && k + 1 < count) fetch_row(i + way, call, row);
-    collide_row(i, row, call);
-    if (state_.links) state_.links->after_step(state_.parity, i), rest_solid(i, row);
-    if (frame_moves) add_moving_frame(i, row, call.out);
-    if (state_.openings) state_.openings->after_step(i, call.out);
-    add_wall_momentum(state_.lattice, row, setting_.walls);
+    state_.lattice.for_pieces(i, [&](const RowPiece& piece, std::size_t number) {
+      if (k == 0 || state_.links) {
+        state_.lattice.row_pointers(state_.parity, row, piece.begin, call.at.in, call.at.out);
+      } else {
+        state_.lattice.next_row_pointers(state_.parity, last, row, call.at.in, call.at.out);
+      }
+      if (fetches && state_.links) {  // the next piece lies beside this one
+        const int size = piece.end - piece.begin;
+        for (const T* const from : call.at.in) fetch(from + piece.begin + way * size, size);
+      } else if (fetches && k + 1 < count) {
+        fetch_row(i + way, call, row);
+      }
+      step_piece(piece, number, row, call);
+    });
+    last = row;
+    if (state_.links) rest_solid(i, row);
+    add_wall_momentum(state_.lattice, i, row, setting_.walls);
     if (even) send_row(state_.lattice, row);
     if (setting_.membranes && reaches_border(i, row)) {
       fill_velocity_halo<T, dimension>(state_.force, row, setting_.domain, setting_.walls);
@@ -213,9 +204,10 @@ void Fluid<T, Set>::restore(const std::function<std::vector<double>(int)>& popul
 
 template <class T, class Set>
 double Fluid<T, Set>::population(int q, int x, const Row& row) const {
-  const T* in[velocity_count];
-  state_.lattice.row_pointers(state_.parity, row, in);
-  return static_cast<double>(in[q][x]);
+  if (!state_.lattice.holds(x, row)) return 0;
+  Pointers at;
+  state_.lattice.row_pointers(state_.parity, row, x, at.in, at.out);
+  return static_cast<double>(at.in[q][x]);
 }
 
 template <class T, class Set>

@@ -71,6 +71,8 @@ class Fluid final : public AnyFluid<Set::dimension> {
   /// In which order step() takes rows, and bands of rows are best taken: what the last step has touched last is still
   /// in the cache.
   [[nodiscard]] bool sweeps_up() const { return state_.parity == Parity::even; }
+  /// FluidState::fluid_below.
+  [[nodiscard]] const std::vector<long>& fluid_below() const { return state_.fluid_below; }
   /// Ends the step, once all rows have been stepped.
   void end_step() {
     state_.parity = next(state_.parity);
@@ -128,22 +130,23 @@ class Fluid final : public AnyFluid<Set::dimension> {
   /// Whether membranes may reach the halo that belongs to row i.
   [[nodiscard]] bool reaches_border(int i, const Row& row) const;
   using Block = std::conditional_t<std::is_same_v<T, double>, rouleau_collision_block_f64, rouleau_collision_block_f32>;
-  /// What the collision operator is called with, row after row.
+  using Pointers = typename FluidState<T, Set>::Pointers;
+  /// What the collision operator is called with, piece after piece.
   struct Call {
-    const T* in[velocity_count];  ///< of a row, as Lattice::row_pointers gives them
-    T* out[velocity_count];
+    Pointers at;
     T* force[dimension];  ///< where nodes are active; the velocity is written over it
     const T* body_force[dimension];
     const T* const* background;  ///< the force elsewhere: `body_force`, or null
     Block block;
   };
-  /// `in` and `out` are those of row i, and come back unchanged.
-  void collide_row(int i, const Row& row, Call& call);
-  /// Asks for what collide_row() will read of row i, when the call has the pointers of another one.
+  /// One of the pieces of `row`; `number`: among the lattice's, where these are not whole rows.
+  void step_piece(const RowPiece& piece, std::size_t number, const Row& row, Call& call);
+  /// The pointers come back unchanged.
+  void collide(const RowPiece& piece, const Row& row, Call& call);
+  /// Asks for what collide() will read of row i, when the call has the pointers of another one.
   void fetch_row(int i, const Call& call, const Row& from) const;
   /// Sets what membranes have spread to the solid nodes of row i to 0: their velocity.
   void rest_solid(int i, const Row& row);
-  void add_moving_frame(int i, const Row& row, T* (&out)[velocity_count]);
 
   using Any::setting_, Any::ranks_, Any::walls_have_acted_, Any::last_walls_;
   CollisionOperator collision_;

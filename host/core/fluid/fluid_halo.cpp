@@ -91,7 +91,7 @@ template <class Function>
 void FluidHalo<T, Set>::with_arrays(Parity parity, Function function) {
   using Row = typename FluidState<T, Set>::Row;
   T* slots[velocity_count];
-  for (int q = 0; q < velocity_count; ++q) slots[q] = state_.lattice.slot(q, Row{});
+  for (int q = 0; q < velocity_count; ++q) slots[q] = state_.lattice.origin(q);
   function(*populations_, parity == Parity::even ? Way::out : Way::home, slots);
   if (!velocities_) return;
   T* velocity[dimension];

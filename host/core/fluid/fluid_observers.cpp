@@ -88,10 +88,8 @@ template <class T, class Set>
 void MassAndSpeed<T, Set>::add(const FluidState<T, Set>& state, int i) {
   using Task = MassAndSpeedTask<T, Set>;
   static const auto function = Dispatch<FindMassAndSpeed<T, Set>, Task*>::pick();
-  const T* in[Set::velocity_count];
   const auto row = state.lattice.row(i);
-  state.lattice.row_pointers(state.parity, row, in);
-  state.mask.for_spans(i, [&](const MaskSpan& span) {
+  state.for_spans(i, [&](const MaskSpan& span, const auto& in) {
     Task task{};
     Set::for_each_velocity([&](auto q) { task.in[q] = in[q] + span.begin; });
     for (int k = 0; k < Set::dimension; ++k) {
@@ -149,11 +147,9 @@ class RowSums {
 
 template <class T, class Set>
 void copy_moments(const FluidState<T, Set>& state, int i, Moments<Set::dimension>* to) {
-  const T* in[Set::velocity_count];
   const auto row = state.lattice.row(i);
-  state.lattice.row_pointers(state.parity, row, in);
   std::fill_n(to, state.nx(), Moments<Set::dimension>{});
-  state.mask.for_spans(i, [&](const MaskSpan& span) {
+  state.for_spans(i, [&](const MaskSpan& span, const auto& in) {
     for (int x = span.begin; x < span.end; ++x) {
       Moments<Set::dimension>& m = to[x];
       Set::for_each_velocity([&](auto q) {
@@ -183,9 +179,7 @@ void copy_relaxation_rates(const FluidState<T, Set>& state, int i, double* to) {
 
 template <class T, class Set>
 void copy_population(const FluidState<T, Set>& state, int q, int i, double* to) {
-  const T* in[Set::velocity_count];
-  state.lattice.row_pointers(state.parity, state.lattice.row(i), in);
-  std::copy_n(in[q], state.nx(), to);
+  state.for_fluid(i, [&](int begin, int end, const auto& in) { std::copy(in[q] + begin, in[q] + end, to + begin); });
   state.mask.for_solid(i, [&](int begin, int end) { std::fill(to + begin, to + end, 0.0); });
 }
 
@@ -217,18 +211,15 @@ std::vector<double> row_velocities_without_membranes(const FluidState<T, Set>& s
   std::vector<double> momentum(static_cast<std::size_t>(state.nx()));
   RowSums<Set::dimension> sums(state.setting.domain);
   for (int i = 0; i < state.lattice.rows(); ++i) {
-    const auto row = state.lattice.row(i);
-    const T* in[Set::velocity_count];
-    state.lattice.row_pointers(state.parity, row, in);
     std::fill(momentum.begin(), momentum.end(), 0.0);
-    Set::for_each_velocity([&](auto q) {
-      constexpr int along = Set::velocity[q][0];
-      if constexpr (along != 0) {
-        for (int x = 0; x < state.nx(); ++x) momentum[x] += along * static_cast<double>(in[q][x]);
-      }
-    });
-    ExactSum& sum = sums[row];
-    state.mask.for_fluid(i, [&](int begin, int end) {
+    ExactSum& sum = sums[state.lattice.row(i)];
+    state.for_fluid(i, [&](int begin, int end, const auto& in) {
+      Set::for_each_velocity([&](auto q) {
+        constexpr int along = Set::velocity[q][0];
+        if constexpr (along != 0) {
+          for (int x = begin; x < end; ++x) momentum[x] += along * static_cast<double>(in[q][x]);
+        }
+      });
       for (int x = begin; x < end; ++x) sum.add(momentum[x] + (state.links ? of_force : 0));
     });
   }
@@ -274,8 +265,6 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
   // one that left is the one that came back plus the wall's own momentum: f_q = f_-q + 6 w_q c_q . u_wall.
   for (int i = 0; i < state.lattice.rows(); ++i) {
     const auto row = state.lattice.row(i);
-    const T* in[Set::velocity_count];
-    state.lattice.row_pointers(state.parity, row, in);
     const auto beyond = [&](int axis, int c) {
       const int place = row[axis - 1] + c;
       return (place < 0 && state.setting.domain.wall_below(axis)) ||
@@ -286,7 +275,7 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
     };
     // Along x, what pressure gives to a wall by a link in direction q that crosses an opening, too: that is the
     // opening's. Elsewhere such links come in pairs, and their pressures cancel.
-    const auto of_opening = [&](int q, int x) {
+    const auto of_opening = [&](const auto& in, int q, int x) {
       const int place = x + Set::velocity[q][0];
       const Domain<Set::dimension>& domain = state.setting.domain;
       if (!(place < 0 && domain.wall_below(0)) && !(place >= state.nx() && domain.wall_above(0))) return 0.0;
@@ -295,29 +284,30 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
       return 2 * Set::weight[q] * density;
     };
     // What a plane in direction q gets, times `sign`.
-    const auto add_plane = [&](int q, int x, double sign) {
+    const auto add_plane = [&](const auto& in, int q, int x, double sign) {
       const auto& c = Set::velocity[q];
       const typename Sums::Wall wall = wall_of(c);
       const double speed = wall == Sums::other ? 0 : wall == Sums::lower ? walls.lower : walls.upper;
       const double force = 2 * static_cast<double>(in[Set::opposite[q]][x]) + 6 * Set::weight[q] * c[0] * speed;
       for (int k = 0; k < Set::dimension; ++k)
-        if (c[k] != 0) sums.add(wall, k, sign * c[k] * (k == 0 ? force - of_opening(q, x) : force));
+        if (c[k] != 0) sums.add(wall, k, sign * c[k] * (k == 0 ? force - of_opening(in, q, x) : force));
     };
     for (int q = 1; q < Set::velocity_count; ++q) {
       const auto& c = Set::velocity[q];
       if (!beyond(1, c[1]) && !(Set::dimension == 3 && beyond(Set::dimension - 1, c[Set::dimension - 1]))) continue;
-      state.mask.for_fluid(i, [&](int begin, int end) {
-        for (int x = begin; x < end; ++x) add_plane(q, x, 1);
+      state.for_fluid(i, [&](int begin, int end, const auto& in) {
+        for (int x = begin; x < end; ++x) add_plane(in, q, x, 1);
       });
     }
-    if (!state.links) continue;
-    state.links->for_links(i, [&](int x, int q, const auto& last, bool plane) {
-      if (plane) add_plane(Set::opposite[q], x, -1);  // a wall before it takes all
-      for (int k = 0; k < Set::dimension; ++k) {
-        if (Set::velocity[q][k] != 0)
-          sums.add(Sums::other, k,
-                   -Set::velocity[q][k] *
-                       (last.left + static_cast<double>(in[q][x]) - (k == 0 ? of_opening(Set::opposite[q], x) : 0)));
+    state.for_links(i, [&](std::size_t piece, const auto& at) {
+      for (const auto& link : state.links->of_piece(piece)) {
+        const int q = link.q, x = link.x;
+        if (link.plane) add_plane(at.in, link.w, x, -1);  // a wall before it takes all
+        const double both = static_cast<double>(link.left) + static_cast<double>(at.in[q][x]);
+        for (int k = 0; k < Set::dimension; ++k) {
+          if (Set::velocity[q][k] != 0)
+            sums.add(Sums::other, k, -Set::velocity[q][k] * (both - (k == 0 ? of_opening(at.in, link.w, x) : 0)));
+        }
       }
     });
   }

@@ -1,8 +1,10 @@
 #include "fluid_state.hpp"
 
 #include <algorithm>
+#include <rouleau/dispatch.hpp>
 
 #include "layers.hpp"
+#include "moving_frame.hpp"
 #include "periodic.hpp"
 #include "relaxation.hpp"
 
@@ -10,20 +12,29 @@ namespace rouleau::core {
 
 template <class T, class Set>
 FluidState<T, Set>::FluidState(const FluidSetting<dimension>& of_fluid)
-    : setting(of_fluid), lattice(of_fluid.domain), mask(of_fluid.domain, of_fluid.solid.get()) {
+    : setting(of_fluid),
+      mask(of_fluid.domain, of_fluid.solid.get()),
+      lattice(of_fluid.domain,
+              of_fluid.solid
+                  ? RowPieces<dimension>(of_fluid.domain, [this](int i, auto add) { mask.for_fluid(i, add); })
+                  : RowPieces<dimension>()) {
   std::array<int, dimension> size{};
   for (int k = 0; k < dimension; ++k) size[k] = setting.domain.block.size(k);
   if (setting.membranes) {
-    for (int k = 0; k < dimension; ++k) force[k] = Field<T, dimension>(size, k);
+    for (int k = 0; k < dimension; ++k) force[k] = Field<T, dimension>(size, k, setting.solid != nullptr);
   }
   const bool layered = !setting.viscosity_of_rows.empty();
-  if (setting.viscosity_contrast || layered) relaxation_rate = Field<T, dimension>(size);
+  if (setting.viscosity_contrast || layered) relaxation_rate = Field<T, dimension>(size, 0, setting.solid != nullptr);
   for (int y = 0; layered && y < size[1]; ++y) {
     const double ratio = setting.viscosity_of_rows.at(setting.domain.block.begin[1] + y);
     rate_of_height.push_back(rate_of_layer(setting.relaxation_rate, ratio));
   }
   set_plain_rates();
   if (setting.solid) links = std::make_unique<SolidLinks<T, Set>>(lattice, *setting.solid);
+  for (int i = 0; setting.solid && i <= lattice.rows(); ++i) {
+    fluid_below.push_back(i == 0 ? 0 : fluid_below.back());
+    if (i > 0) mask.for_fluid(i - 1, [&](int begin, int end) { fluid_below.back() += end - begin; });
+  }
   if (setting.openings) {
     openings = std::make_unique<OpenLinks<T, Set>>(
         lattice, *setting.openings, setting.solid.get(), setting.walls,
@@ -34,7 +45,7 @@ FluidState<T, Set>::FluidState(const FluidSetting<dimension>& of_fluid)
 
 template <class T, class Set>
 std::size_t FluidState<T, Set>::bytes() const {
-  std::size_t sum = lattice.bytes() + relaxation_rate.bytes();
+  std::size_t sum = lattice.bytes() + relaxation_rate.bytes() + (links ? links->bytes() : 0);
   for (const auto& component : force) sum += component.bytes();
   return sum;
 }
@@ -42,10 +53,11 @@ std::size_t FluidState<T, Set>::bytes() const {
 template <class T, class Set>
 void FluidState<T, Set>::set_plain_rates() {
   if (!setting.viscosity_contrast && rate_of_height.empty()) return;
-  relaxation_rate.fill(static_cast<T>(setting.relaxation_rate));
-  for (int i = 0; !rate_of_height.empty() && i < lattice.rows(); ++i) {
+  for (int i = 0; i < lattice.rows(); ++i) {
     const Row row = lattice.row(i);
-    std::fill_n(relaxation_rate.row(row), nx(), static_cast<T>(rate_of_row(row)));
+    T* const rates = relaxation_rate.row(row);
+    mask.for_fluid(
+        i, [&](int begin, int end) { std::fill(rates + begin, rates + end, static_cast<T>(rate_of_row(row))); });
   }
 }
 
@@ -53,7 +65,8 @@ template <class T, class Set>
 void FluidState<T, Set>::settle() {
   for (int i = 0; parity == Parity::even && i < lattice.rows(); ++i) receive_row(lattice, lattice.row(i));
   for (int i = 0; openings && i < lattice.rows(); ++i) openings->before_step(parity, i);
-  for (int i = 0; links && i < lattice.rows(); ++i) links->before_step(parity, i);
+  for (int i = 0; i < lattice.rows(); ++i)
+    for_links(i, [&](std::size_t piece, const Pointers& at) { links->before_step(piece, at.out); });
 }
 
 template <class T, class Set>
@@ -82,31 +95,33 @@ void FluidState<T, Set>::set(const StateOfNode<dimension>& state) {
   for (int i = 0; i < lattice.rows(); ++i) {
     const Row row = lattice.row(i);
     const double tau = 1 / rate_of_row(row);
-    for (int x = 0; x < nx(); ++x) {
-      NodeState<dimension> s;
-      if constexpr (dimension == 2) {
-        s = state(begin[0] + x, begin[1] + row[0]);
-      } else {
-        s = state(begin[0] + x, begin[1] + row[0], begin[2] + row[1]);
-      }
-      // Populations hold the momentum without the half force that the velocity includes.
-      std::array<double, dimension> momentum;
-      for (int k = 0; k < dimension; ++k) momentum[k] = s.velocity[k] - 0.5 * setting.body_force[k];
-      for (int q = 0; q < velocity_count; ++q) {
-        const auto& c = Set::velocity[q];
-        double strain = 0, divergence = 0;
-        for (int k = 0; k < dimension; ++k) {
-          strain += static_cast<double>(c[k] * c[k]) * s.gradient[(dimension + 1) * k];
-          for (int l = k + 1; l < dimension; ++l)
-            strain +=
-                static_cast<double>(c[k] * c[l]) * (s.gradient[dimension * k + l] + s.gradient[dimension * l + k]);
-          divergence += s.gradient[(dimension + 1) * k];
+    lattice.for_pieces(i, [&](const RowPiece& piece, std::size_t) {
+      for (int x = piece.begin; x < piece.end; ++x) {
+        NodeState<dimension> s;
+        if constexpr (dimension == 2) {
+          s = state(begin[0] + x, begin[1] + row[0]);
+        } else {
+          s = state(begin[0] + x, begin[1] + row[0], begin[2] + row[1]);
         }
-        strain -= divergence / 3;
-        lattice.slot(q, row)[x] =
-            static_cast<T>(equilibrium(q, s.density, momentum) - 3 * tau * Set::weight[q] * strain);
+        // Populations hold the momentum without the half force that the velocity includes.
+        std::array<double, dimension> momentum;
+        for (int k = 0; k < dimension; ++k) momentum[k] = s.velocity[k] - 0.5 * setting.body_force[k];
+        for (int q = 0; q < velocity_count; ++q) {
+          const auto& c = Set::velocity[q];
+          double strain = 0, divergence = 0;
+          for (int k = 0; k < dimension; ++k) {
+            strain += static_cast<double>(c[k] * c[k]) * s.gradient[(dimension + 1) * k];
+            for (int l = k + 1; l < dimension; ++l)
+              strain +=
+                  static_cast<double>(c[k] * c[l]) * (s.gradient[dimension * k + l] + s.gradient[dimension * l + k]);
+            divergence += s.gradient[(dimension + 1) * k];
+          }
+          strain -= divergence / 3;
+          lattice.slot(q, row, x)[x] =
+              static_cast<T>(equilibrium(q, s.density, momentum) - 3 * tau * Set::weight[q] * strain);
+        }
       }
-    }
+    });
   }
   restart();
 }
@@ -117,9 +132,7 @@ void FluidState<T, Set>::take_over(const FluidState& other, double factor) {
   for (int k = 0; k < dimension; ++k) half[k] = (factor * other.setting.body_force[k] - setting.body_force[k]) / 2;
   for (int i = 0; i < lattice.rows(); ++i) {
     const Row row = lattice.row(i);
-    const T* in[velocity_count];
-    other.lattice.row_pointers(other.parity, row, in);
-    mask.for_fluid(i, [&](int begin, int end) {
+    other.for_fluid(i, [&](int begin, int end, const auto& in) {
       for (int x = begin; x < end; ++x) {
         double density = 0;
         std::array<double, dimension> momentum{}, scaled;
@@ -131,7 +144,7 @@ void FluidState<T, Set>::take_over(const FluidState& other, double factor) {
         for (int k = 0; k < dimension; ++k) scaled[k] = factor * momentum[k] + half[k];
         for (int q = 0; q < velocity_count; ++q) {
           const double rest = static_cast<double>(in[q][x]) - other.equilibrium(q, density, momentum);
-          lattice.slot(q, row)[x] = static_cast<T>(equilibrium(q, factor * density, scaled) + factor * rest);
+          lattice.slot(q, row, begin)[x] = static_cast<T>(equilibrium(q, factor * density, scaled) + factor * rest);
         }
       }
     });
@@ -144,7 +157,11 @@ void FluidState<T, Set>::restore(const std::function<std::vector<double>(int)>& 
   for (int q = 0; q < velocity_count; ++q) {
     const std::vector<double> values = populations(q);
     const double* from = values.data();
-    for (int i = 0; i < lattice.rows(); ++i, from += nx()) std::copy_n(from, nx(), lattice.slot(q, lattice.row(i)));
+    for (int i = 0; i < lattice.rows(); ++i, from += nx()) {
+      lattice.for_pieces(i, [&](const RowPiece& piece, std::size_t) {
+        std::copy(from + piece.begin, from + piece.end, lattice.slot(q, lattice.row(i), piece.begin) + piece.begin);
+      });
+    }
   }
   restart();
 }
@@ -153,16 +170,43 @@ template <class T, class Set>
 void FluidState<T, Set>::restart() {
   parity = Parity::even;
   for (int i = 0; i < lattice.rows(); ++i) send_row(lattice, lattice.row(i));
-  if (links) links->restart();
+  for (int i = 0; i < lattice.rows(); ++i)
+    for_links(i, [&](std::size_t piece, const Pointers& at) { links->after_step(piece, at.out); });
   if (openings) openings->restart();
+}
+
+template <class T, class Set>
+void FluidState<T, Set>::add_moving_frame(const RowPiece& piece, const Row& row,
+                                          const typename Lattice<T, Set>::Out& out) const {
+  if constexpr (dimension == 2) {
+    static const auto function = Dispatch<AddMovingFrame, const MovingFrameTask<T>*>::pick();
+    const auto of = [](const std::array<double, 2>& values, T(&to)[2]) {
+      for (int k = 0; k < 2; ++k) to[k] = static_cast<T>(values[k]);
+    };
+    MovingFrameTask<T> task{};
+    task.rate = static_cast<T>(rate_of_row(row));
+    of(setting.body_force, task.body_force);
+    of(frame, task.frame);
+    mask.for_spans(piece.row, [&](const MaskSpan& span) {
+      if (span.begin < piece.begin || span.begin >= piece.end) return;
+      const bool active = has_force(span);
+      Set::for_each_velocity([&](auto q) { task.out[q] = out[q] + span.begin; });
+      for (int k = 0; k < 2; ++k) task.velocity[k] = active ? force[k].row(row) + span.begin : nullptr;
+      task.relaxation_rate = active && setting.viscosity_contrast ? relaxation_rate.row(row) + span.begin : nullptr;
+      task.count = span.end - span.begin;
+      function(&task);
+    });
+  }
 }
 
 template <class T, class Set>
 LinkMemory FluidState<T, Set>::link_memory(const Ranks<dimension>& ranks) const {
   std::vector<std::array<double, 3>> mine;  // place, and what LinkMemory has of it
-  for (int i = 0; links && i < lattice.rows(); ++i) {
-    links->for_links(i, [&](int x, int q, const auto& last, bool) {
-      mine.push_back({place_of_link(i, x, q), last.left, last.away});
+  for (int i = 0; i < lattice.rows(); ++i) {
+    for_links(i, [&](std::size_t piece, const Pointers&) {
+      for (const auto& link : links->of_piece(piece))
+        mine.push_back(
+            {place_of_link(i, link.x, link.q), static_cast<double>(link.left), static_cast<double>(link.away)});
     });
   }
   std::vector<std::array<double, 3>> all;
@@ -178,13 +222,15 @@ LinkMemory FluidState<T, Set>::link_memory(const Ranks<dimension>& ranks) const 
 
 template <class T, class Set>
 void FluidState<T, Set>::recall_links(const LinkMemory& memory) {
-  for (int i = 0; links && i < lattice.rows(); ++i) {
-    links->recall(i, [&](int x, int q, auto& last) {
-      const double place = place_of_link(i, x, q);
-      const auto found = std::lower_bound(memory.place.begin(), memory.place.end(), place);
-      if (found == memory.place.end() || *found != place) return;
-      const auto at = static_cast<std::size_t>(found - memory.place.begin());
-      last = {memory.left[at], memory.away[at]};
+  for (int i = 0; i < lattice.rows(); ++i) {
+    for_links(i, [&](std::size_t piece, const Pointers&) {
+      for (auto& link : links->of_piece(piece)) {
+        const double place = place_of_link(i, link.x, link.q);
+        const auto found = std::lower_bound(memory.place.begin(), memory.place.end(), place);
+        if (found == memory.place.end() || *found != place) continue;
+        const auto at = static_cast<std::size_t>(found - memory.place.begin());
+        link.left = static_cast<T>(memory.left[at]), link.away = static_cast<T>(memory.away[at]);
+      }
     });
   }
 }

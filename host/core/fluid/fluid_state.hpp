@@ -34,14 +34,15 @@ struct FluidState {
   using Row = typename Lattice<T, Set>::Row;
 
   const FluidSetting<dimension>& setting;  ///< of who has this state, and lives as long; its drive may change
-  Lattice<T, Set> lattice;
   NodeMask mask;
+  Lattice<T, Set> lattice;
   std::unique_ptr<SolidLinks<T, Set>> links;    ///< null without solid nodes
   std::unique_ptr<OpenLinks<T, Set>> openings;  ///< null where x is periodic
   /// Force density, and after a step the velocity, in active nodes.
   VectorField<T, dimension> force;
   Field<T, dimension> relaxation_rate;
   std::vector<double> rate_of_height = {};  ///< by height in the block; empty without layers
+  std::vector<long> fluid_below = {};       ///< nodes in the rows below each row, and in all; empty without solid nodes
   Parity parity = Parity::even;
   std::array<double, dimension> frame = {};  ///< its velocity (moving_frame.hpp)
 
@@ -51,7 +52,34 @@ struct FluidState {
   /// Nodes of the block along x.
   [[nodiscard]] int nx() const { return setting.domain.block.size(0); }
   [[nodiscard]] std::size_t bytes() const;
-  /// 1/tau of the fluid at a row of the block, cells aside.
+  /// Calls function(span, in) for the spans of row i, with the populations before the next collision from x = 0 on.
+  template <class Function>
+  void for_spans(int i, Function function) const {
+    mask.for_spans(i, [&](const MaskSpan& span) {
+      if (span.begin < span.end) function(span, pointers(i, span.begin).in);
+    });
+  }
+  /// Calls function(begin, end, in) for the runs of fluid of row i.
+  template <class Function>
+  void for_fluid(int i, Function function) const {
+    mask.for_fluid(i, [&](int begin, int end) { function(begin, end, pointers(i, begin).in); });
+  }
+  /// Where there are links to solid nodes, calls function(piece's number, pointers) for the pieces of row i.
+  template <class Function>
+  void for_links(int i, Function function) const {
+    if (!links) return;
+    lattice.for_pieces(i, [&](const RowPiece& piece, std::size_t n) { function(n, pointers(i, piece.begin)); });
+  }
+  /// Of the next collision of row i's piece at x.
+  struct Pointers {
+    typename Lattice<T, Set>::In in;
+    typename Lattice<T, Set>::Out out;
+  };
+  [[nodiscard]] Pointers pointers(int i, int x) const {
+    Pointers found;
+    lattice.row_pointers(parity, lattice.row(i), x, found.in, found.out);
+    return found;
+  }
   /// LinkMemory::place of a link of row i.
   [[nodiscard]] double place_of_link(int i, int x, int q) const {
     const auto row = lattice.row(i);
@@ -60,6 +88,7 @@ struct FluidState {
       node = node * setting.domain.size[k] + setting.domain.block.begin[k] + (k > 0 ? row[std::max(k - 1, 0)] : x);
     return node * velocity_count + q;
   }
+  /// 1/tau of the fluid at a row of the block, cells aside.
   [[nodiscard]] double rate_of_row(const Row& row) const {
     return setting.viscosity_of_rows.empty() ? setting.relaxation_rate : rate_of_height[row[0]];
   }
@@ -69,6 +98,8 @@ struct FluidState {
 
   /// Completes what lies around the block (AnyFluid::settle).
   void settle();
+  /// After a piece of a row has been collided, of which `out` has the populations (moving_frame.hpp).
+  void add_moving_frame(const RowPiece& piece, const Row& row, const typename Lattice<T, Set>::Out& out) const;
   /// AnyFluid::link_memory() and recall_links().
   [[nodiscard]] LinkMemory link_memory(const Ranks<dimension>& ranks) const;
   void recall_links(const LinkMemory& memory);

@@ -64,9 +64,22 @@ void copy_across(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& 
     if (!comes_across(lattice, q, row, across)) return;
     const int along = Set::velocity[q][0];
     const int begin = wraps ? -1 : (along > 0 ? 1 : 0), end = lattice.size(0) + (wraps ? 1 : (along < 0 ? -1 : 0));
-    const T* const from = lattice.slot(q, out ? row : across);
-    std::copy(from + begin, from + end, lattice.slot(q, out ? across : row) + begin);
+    const auto copy = [&](int first, int last) {
+      const T* const from = lattice.slot(q, out ? row : across, first);
+      std::copy(from + first, from + last, lattice.slot(q, out ? across : row, first) + first);
+    };
+    if (lattice.pieces().all()) return copy(begin, end);
+    for (int x = begin; x < end; ++x) {
+      if (lattice.holds(x, row) && lattice.holds(x, across)) copy(x, x + 1);
+    }
   });
+}
+
+/// From node to node of a row, if both are there.
+template <class T, class Set>
+void copy_node(Lattice<T, Set>& lattice, int q, const typename Lattice<T, Set>::Row& row, int from, int to) {
+  if (lattice.holds(from, row) && lattice.holds(to, row))
+    lattice.slot(q, row, to)[to] = lattice.slot(q, row, from)[from];
 }
 
 }  // namespace
@@ -75,8 +88,8 @@ template <class T, class Set>
 void send_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row) {
   const int nx = lattice.size(0);
   if (lattice.wraps(0)) {
-    for_slots<Set>(+1, [&](int q) { lattice.slot(q, row)[nx] = lattice.slot(q, row)[0]; });
-    for_slots<Set>(-1, [&](int q) { lattice.slot(q, row)[-1] = lattice.slot(q, row)[nx - 1]; });
+    for_slots<Set>(+1, [&](int q) { copy_node(lattice, q, row, 0, nx); });
+    for_slots<Set>(-1, [&](int q) { copy_node(lattice, q, row, nx - 1, -1); });
   }
   copy_across(lattice, row, true);
 }
@@ -87,10 +100,10 @@ void receive_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& 
   copy_across(lattice, row, false);
   if (!lattice.wraps(0)) return;
   for_slots<Set>(+1, [&](int q) {
-    if (comes_along(lattice, q, row)) lattice.slot(q, row)[0] = lattice.slot(q, row)[nx];
+    if (comes_along(lattice, q, row)) copy_node(lattice, q, row, nx, 0);
   });
   for_slots<Set>(-1, [&](int q) {
-    if (comes_along(lattice, q, row)) lattice.slot(q, row)[nx - 1] = lattice.slot(q, row)[-1];
+    if (comes_along(lattice, q, row)) copy_node(lattice, q, row, -1, nx - 1);
   });
 }
 

@@ -5,14 +5,9 @@
 namespace rouleau::core {
 
 template <class T, class Set>
-SolidLinks<T, Set>::SolidLinks(Lattice<T, Set>& lattice, const SolidNodes<dimension>& solid) {
+SolidLinks<T, Set>::SolidLinks(const Lattice<T, Set>& lattice, const SolidNodes<dimension>& solid) {
   using Node = std::array<int, dimension>;
   const Domain<dimension>& domain = lattice.domain();
-  const auto slot = [&](int q, const Node& node) {  // of a node around the block, counted from its first
-    typename Lattice<T, Set>::Row row;
-    std::copy(node.begin() + 1, node.end(), row.begin());
-    return lattice.slot(q, row) + node[0];
-  };
   const auto moved = [](Node node, const Node& by) {
     for (int k = 0; k < dimension; ++k) node[k] += by[k];
     return node;
@@ -27,12 +22,14 @@ SolidLinks<T, Set>::SolidLinks(Lattice<T, Set>& lattice, const SolidNodes<dimens
     if (domain.wrapped(0, node[0] + toward[0]) < 0) toward[0] = 0;
     return solid.cut(node, toward);
   };
-  for (int i = 0; i < lattice.rows(); ++i) {
+  const RowPieces<dimension>& pieces = lattice.pieces();
+  for (std::size_t n = 0; n < pieces.first_piece(lattice.rows()); ++n) {
     first_.push_back(links_.size());
-    const auto row = lattice.row(i);
+    const RowPiece& piece = pieces.piece(n);
+    const auto row = lattice.row(piece.row);
     Node x;
     std::copy(row.begin(), row.end(), x.begin() + 1);
-    for (x[0] = 0; x[0] < lattice.size(0); ++x[0]) {
+    for (x[0] = piece.begin; x[0] < piece.end; ++x[0]) {
       const Node node = moved(x, domain.block.begin);
       if (solid.at(node)) continue;
       for (int q = 1; q < Set::velocity_count; ++q) {
@@ -44,16 +41,12 @@ SolidLinks<T, Set>::SolidLinks(Lattice<T, Set>& lattice, const SolidNodes<dimens
         if (plane ? !(cut(node, toward) < half_way) : !solid.at(domain, beyond)) continue;
         const bool alone = out_of_domain(behind) || solid.at(domain, behind);
         const double share = alone ? half_way : cut(node, toward);
-        T* const own = slot(q, x);
-        links_.push_back({.own = own,
-                          .toward = slot(w, x),
-                          .back = plane ? own : slot(w, moved(x, toward)),
-                          .toward_streamed = slot(q, moved(x, away)),
-                          .factor = static_cast<T>((1 - 2 * share) / (1 + 2 * share)),
-                          .left = *own,
-                          .away = *slot(w, x),
+        links_.push_back({.factor = static_cast<T>((1 - 2 * share) / (1 + 2 * share)),
+                          .left = 0,
+                          .away = 0,
                           .x = x[0],
                           .q = static_cast<signed char>(q),
+                          .w = static_cast<signed char>(w),
                           .plane = plane});
       }
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "lattice.hpp"
@@ -18,81 +19,45 @@ namespace rouleau::core {
 /// (central linear interpolation: Ginzburg, Verhaeghe, d'Humieres, Commun. Comput. Phys. 3, 427, 2008). Without a fluid
 /// node on the other side of x, k is 0.
 ///
-/// Solid nodes are not collided, so the slots that would stream between them and x are free: before an odd step of a
+/// Solid nodes are not collided, so the slots that would stream between them and x are free: before a step of a
 /// row each of its links puts what comes back into the slot that the collision reads. No link touches what another one,
 /// or a collision, does.
 template <class T, class Set>
 class SolidLinks {
  public:
   static constexpr int dimension = Set::dimension;
-  SolidLinks(Lattice<T, Set>& lattice, const SolidNodes<dimension>& solid);
+  using Out = typename Lattice<T, Set>::Out;
+  /// Of a fluid at rest.
+  SolidLinks(const Lattice<T, Set>& lattice, const SolidNodes<dimension>& solid);
 
-  /// The populations of an even step have been set, with what comes back among them.
-  void restart() {
-    for (Link& link : links_) link.left = *link.own, link.away = *link.toward;
-  }
-  /// Before row i is collided: after receive_row() in an even step. May be repeated.
-  void before_step(Parity parity, int i) {
-    const bool even = parity == Parity::even;
-    for_row(i, [&](Link& link) {
-      if (even) {
-        *link.own = link.left + link.factor * (*link.toward - link.away);
-      } else {
-        *link.back = link.left + link.factor * (*link.toward_streamed - link.away);
-      }
-    });
-  }
-  void after_step(Parity parity, int i) {
-    const bool even = parity == Parity::even;
-    for_row(i, [&](Link& link) {
-      link.left = even ? *link.own : *link.back;
-      link.away = even ? *link.toward : *link.toward_streamed;
-    });
-  }
-
-  /// What the collisions of the last step made of the populations along a link: f'_w, which has left, and f'_q.
-  struct Last {
-    double left, away;
+  /// `plane`: it leads out of the domain, over a wall that lies before the domain's own, not to a solid node.
+  struct Link {
+    T factor;      ///< k
+    T left, away;  ///< what the last step made of the populations: f'_w, which has left, and f'_q
+    int x;
+    signed char q, w;
+    bool plane;
   };
-  /// Calls function(x, q, last, plane) for the links of row i; `plane`: it leads out of the domain, over a wall that
-  /// lies before the domain's own, not to a solid node.
-  template <class Function>
-  void for_links(int i, Function function) const {
-    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) {
-      const Link& link = links_[k];
-      function(link.x, link.q, last_of(link), link.plane);
-    }
+  /// Those of a piece of the lattice's, by its number.
+  [[nodiscard]] std::span<Link> of_piece(std::size_t number) {
+    return {links_.data() + first_[number], links_.data() + first_[number + 1]};
   }
-  /// Calls function(x, q, last) for the links of row i, whose last step is what that says from now on.
-  template <class Function>
-  void recall(int i, Function function) {
-    for_row(i, [&](Link& link) {
-      Last last = last_of(link);
-      function(link.x, link.q, last);
-      link.left = static_cast<T>(last.left), link.away = static_cast<T>(last.away);
-    });
+  /// What the next step takes for the last one's: after a step, and when the populations of an even one have been set,
+  /// with what comes back among them. `out`: as a collision of the piece gets them; what it reads as f_q it writes as
+  /// f'_w.
+  void after_step(std::size_t piece, const Out& out) {
+    for (Link& link : of_piece(piece)) link.left = out[link.w][link.x], link.away = out[link.q][link.x];
+  }
+  /// Before the piece is collided: after receive_row() in an even step. May be repeated.
+  void before_step(std::size_t piece, const Out& out) {
+    for (const Link& link : of_piece(piece))
+      out[link.w][link.x] = link.left + link.factor * (out[link.q][link.x] - link.away);
   }
   [[nodiscard]] std::size_t bytes() const { return links_.size() * sizeof(Link); }
 
  private:
-  struct Link {
-    T* own;                ///< slot q of x: f_q before an even step, f'_w after it
-    T* toward;             ///< slot w of x: f_w before an even step, f'_q after it
-    T* back;               ///< what an odd step reads as f_q and writes as f'_w
-    T* toward_streamed;    ///< what it reads as f_w and writes as f'_q
-    T factor, left, away;  ///< k; f'_w and f'_q of the last step
-    int x;
-    signed char q;
-    bool plane;
-  };
-  static Last last_of(const Link& link) { return {static_cast<double>(link.left), static_cast<double>(link.away)}; }
-  template <class Function>
-  void for_row(int i, Function function) {
-    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) function(links_[k]);
-  }
-
   std::vector<Link> links_;
-  std::vector<std::size_t> first_;  ///< of each row, and the end
+  std::vector<std::size_t> first_;  ///< of each piece, and the end
 };
 
 extern template class SolidLinks<float, D2Q9>;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <cstring>
+#include <cstdlib>
 #include <memory>
 #include <new>
 
@@ -18,26 +18,30 @@ template <class T>
 class Storage {
  public:
   Storage() = default;
-  explicit Storage(std::size_t count) : count_(count) {
-    const std::align_val_t alignment{2 * bytes() >= huge_page ? huge_page : cache_line};
-    data_ = {static_cast<T*>(::operator new(bytes(), alignment)), Free{alignment}};
+  /// `in_parts`: some parts of it only will be touched, and no others take memory.
+  explicit Storage(std::size_t count, bool in_parts = false) : count_(count) {
+    const std::size_t alignment = 2 * bytes() >= huge_page && !in_parts ? huge_page : cache_line;
+    std::size_t room = bytes() + alignment;
+    zeros_.reset(std::calloc(room, 1));
+    if (!zeros_) throw std::bad_alloc();
+    void* begin = zeros_.get();
+    data_ = static_cast<T*>(std::align(alignment, bytes(), begin, room));
 #if defined(__linux__)
-    if (alignment == std::align_val_t{huge_page}) madvise(data_.get(), bytes(), MADV_HUGEPAGE);
+    if (alignment == huge_page) madvise(data_, bytes(), MADV_HUGEPAGE);
 #endif
-    std::memset(static_cast<void*>(data_.get()), 0, bytes());
   }
 
-  [[nodiscard]] T* data() const { return data_.get(); }
+  [[nodiscard]] T* data() const { return data_; }
   [[nodiscard]] std::size_t bytes() const { return sizeof(T) * count_; }
 
  private:
   static constexpr std::size_t cache_line = 64, huge_page = std::size_t{2} << 20;
   struct Free {
-    std::align_val_t alignment{cache_line};
-    void operator()(T* p) const { ::operator delete(p, alignment); }
+    void operator()(void* p) const { std::free(p); }
   };
   std::size_t count_ = 0;
-  std::unique_ptr<T[], Free> data_;
+  std::unique_ptr<void, Free> zeros_;
+  T* data_ = nullptr;
 };
 
 /// Asks for `count` values, soon to be read and written, to be brought into the second-level cache. Nothing waits for

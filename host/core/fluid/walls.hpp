@@ -54,7 +54,8 @@ class WallForceSums {
 /// every q that comes from the wall (Ladd, J. Fluid Mech. 271, 1994). To be called after every collision of the row, at
 /// either parity.
 template <class T, class Set>
-void add_wall_momentum(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row, const WallVelocity& walls);
+void add_wall_momentum(Lattice<T, Set>& lattice, int i, const typename Lattice<T, Set>::Row& row,
+                       const WallVelocity& walls);
 
 /// What a row beyond a wall is made of: the node of the fluid that it mirrors, and the wall's velocity. A force spread
 /// there acts on that node with reversed sign, and the velocity there is 2 u_wall - u: each is the other's adjoint, so

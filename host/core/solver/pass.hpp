@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,6 +43,8 @@ struct RowBands {
   bool upwards = true;  ///< the order in which a worker takes its bands
   int below = 0;        ///< rows at the lower end, which other blocks wait for
   int above = 0;        ///< at the upper end
+  /// What the rows below each row cost, and all of them; empty: one costs as much as another.
+  std::span<const long> cost_below = {};
 
   /// Calls function(rows) for the bands of a worker.
   template <class Function>
@@ -62,12 +65,23 @@ struct RowBands {
  private:
   template <class Function>
   void for_bands(Range all, Worker worker, Function function) const {
-    const Range share = worker.share(all.end - all.begin);
+    const Range share = share_of(all, worker);
     const int count = (share.end - share.begin + height - 1) / height;
     for (int i = 0; i < count; ++i) {
       const int begin = share.begin + (upwards ? i : count - 1 - i) * height;
-      function(Range{all.begin + begin, all.begin + std::min(begin + height, share.end)});
+      function(Range{begin, std::min(begin + height, share.end)});
     }
+  }
+  [[nodiscard]] Range share_of(Range all, Worker worker) const {
+    const Range share = worker.share(all.end - all.begin);
+    if (cost_below.empty()) return {all.begin + share.begin, all.begin + share.end};
+    const auto cost = cost_below.begin();
+    const auto bound = [&](int i) {
+      const long wanted = cost[all.begin] + (cost[all.end] - cost[all.begin]) * i / worker.count;
+      return i == worker.count ? all.end
+                               : static_cast<int>(std::lower_bound(cost + all.begin, cost + all.end, wanted) - cost);
+    };
+    return {bound(worker.index), bound(worker.index + 1)};
   }
 };
 

@@ -212,7 +212,12 @@ RowBands Solver<T, Set>::bands() const {
   const int layer = dimension == 3 ? setup_.domain.block.size(1) : 1;                             // rows of a plane
   const int height = std::max(least * layer, cache / (active * static_cast<int>(dimension * sizeof(T))));
   const EndRows ends = fluid_.end_rows();
-  return {.rows = rows, .height = height, .upwards = fluid_.sweeps_up(), .below = ends.below, .above = ends.above};
+  return {.rows = rows,
+          .height = height,
+          .upwards = fluid_.sweeps_up(),
+          .below = ends.below,
+          .above = ends.above,
+          .cost_below = fluid_.fluid_below()};
 }
 
 template <class T, class Set>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <string>
 
@@ -55,7 +56,7 @@ class Points {
   [[nodiscard]] double cost(const Plan& plan) const {
     if (points_.empty()) return 0;
     const scene::Precision precision = plan.scene->numerics.precision;
-    const double count = static_cast<double>(domain_.nodes()), nodes = static_cast<double>(points_.size()) * every_,
+    const double count = scene::fluid_nodes(plan.scene->domain), nodes = static_cast<double>(points_.size()) * every_,
                  of_fluid = step_cost(count, 0, precision, D),
                  of_all = step_cost(count, nodes, precision, D, membrane_scheme(plan));
     return (of_all - of_fluid) / nodes / (of_fluid / count) * every_;
@@ -68,6 +69,27 @@ class Points {
   std::vector<std::array<int, D>> points_;
 };
 
+/// Between walls of any shape; none without them.
+template <int D>
+typename core::Decomposition<D>::Fluid some_fluid(const scene::Scene& scene, const core::Domain<D>& domain) {
+  constexpr double enough = 1e5;
+  const core::RegionPointer<D> region = scene::fluid_region<D>(scene);
+  if (!region) return {};
+  const double count = scene::fluid_nodes(scene.domain);
+  const int every = static_cast<int>(std::ceil(std::pow(std::max(count / enough, 1.0), 1.0 / D)));
+  core::Box<D> coarse{};
+  for (int k = 0; k < D; ++k) coarse.end[k] = (domain.size[k] - 1) / every + 1;
+  typename core::Decomposition<D>::Fluid fluid;
+  for (int i = 0; i < row_count(coarse) * coarse.size(0); ++i) {
+    std::array<int, D> node;
+    core::Vec<D> place;
+    for (int k = 0, rest = i; k < D; rest /= coarse.size(k++)) place[k] = node[k] = rest % coarse.size(k) * every;
+    if (region->distance(place).value > 0) fluid.nodes.push_back(node);
+  }
+  fluid.each = count / static_cast<double>(fluid.nodes.size());
+  return fluid;
+}
+
 template <int D>
 core::Decomposition<D> cut(const Plan& plan, int ranks) {
   const scene::Scene& scene = *plan.scene;
@@ -76,7 +98,8 @@ core::Decomposition<D> cut(const Plan& plan, int ranks) {
   if (plan.has_cells) {
     for_each_cell<D>(scene, scene::lattice_spacing(scene), [&](std::size_t, const auto& cell) { points.add(cell); });
   }
-  return core::Decomposition<D>::bisected(domain, ranks, points.all(), points.cost(plan));
+  return core::Decomposition<D>::bisected(domain, ranks, points.all(), points.cost(plan), {},
+                                          some_fluid<D>(scene, domain));
 }
 
 }  // namespace
@@ -128,11 +151,13 @@ core::Decomposition<D> cut_again(const Plan& plan, const core::Ranks<D>& ranks, 
   points.add(cells);
   points.share(ranks);
   const double point_cost = points.cost(plan);
-  std::vector<double> expected(seconds.size());
-  for (int rank = 0; rank < blocks.ranks(); ++rank) {
+  const auto fluid = some_fluid<D>(*plan.scene, domain);
+  std::vector<double> expected(seconds.size(), 1.0);
+  for (int rank = 0; rank < blocks.ranks() && fluid.nodes.empty(); ++rank) {
     const core::Box<D> block = blocks.domain(rank).block;
     expected[rank] = static_cast<double>(core::row_count(block)) * block.size(0);
   }
+  for (const std::array<int, D>& node : fluid.nodes) expected[blocks.owner(node)] += fluid.each;
   for (const std::array<int, D>& point : points.all()) expected[blocks.owner(point)] += point_cost;
   typename core::Decomposition<D>::Measured measured{.blocks = &blocks, .factor = {}};
   const bool known = std::all_of(seconds.begin(), seconds.end(), [](double s) { return s > 0; });
@@ -140,7 +165,7 @@ core::Decomposition<D> cut_again(const Plan& plan, const core::Ranks<D>& ranks, 
     measured.factor.push_back(known ? seconds[rank] / expected[rank] : 1);
   const double mean = std::accumulate(measured.factor.begin(), measured.factor.end(), 0.0) / blocks.ranks();
   for (double& factor : measured.factor) factor /= mean;
-  return core::Decomposition<D>::bisected(domain, blocks.ranks(), points.all(), point_cost, measured);
+  return core::Decomposition<D>::bisected(domain, blocks.ranks(), points.all(), point_cost, measured, fluid);
 }
 
 template core::Decomposition<2> cut_again(const Plan&, const core::Ranks<2>&, const core::CellNodes&,

@@ -114,10 +114,11 @@ OpenLinks<T, Set>::OpenLinks(Lattice<T, Set>& lattice, const std::array<Opening,
         if (!ends[end].crosses(node, q)) continue;
         auto from = row;
         for (int k = 1; k < dimension; ++k) from[k - 1] -= Set::velocity[q][k];
-        T* const own = lattice.slot(q, row) + x;
+        const int beyond = x - Set::velocity[q][0];
+        T* const own = lattice.slot(q, row, x) + x;
         const bool pressure = openings[domain.wall_below(0) ? end : 1].kind == Opening::Kind::pressure;
         links_.push_back({.own = own,
-                          .back = lattice.slot(Set::opposite[q], from) + x - Set::velocity[q][0],
+                          .back = lattice.slot(Set::opposite[q], from, beyond) + beyond,
                           .known = static_cast<T>(ends[end].known(node, q)),
                           .resistance = static_cast<T>(ends[end].resistance(node, q)),
                           .convection = static_cast<T>(pressure && flow.inertia ? 6 * Set::weight[q] : 0),

@@ -1,0 +1,133 @@
+// Where numbers of a block's nodes lie that has them for some nodes only, and for those next to them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "domain.hpp"
+
+namespace rouleau::core {
+
+/// Nodes [begin, end) of row `row` of a block.
+struct RowPiece {
+  int row, begin, end;
+};
+
+/// Pieces of rows, and an array of one number for each of their nodes and for every node next to one, in the halo of
+/// one node, too. Rows that lie around the block are counted from -1; x from the block's first node.
+template <int D>
+class RowPieces {
+ public:
+  using Row = std::array<int, D - 1>;
+
+  /// All nodes are there; memory is not this class's matter.
+  RowPieces() = default;
+  /// `runs(i, add)` calls add(begin, end) for the nodes of row i that are wanted; what little lies between them belongs
+  /// to a piece, too. A row that reaches an opening is one piece.
+  template <class Runs>
+  RowPieces(const Domain<D>& domain, Runs runs) : block_(domain.block) {
+    constexpr int little = 8;
+    first_piece_.push_back(0);
+    for (int i = 0; i < row_count(block_); ++i) {
+      std::vector<RowPiece> found;
+      runs(i, [&](int begin, int end) { found.push_back({i, begin, end}); });
+      const int x = block_.begin[0];
+      const bool opens = !domain.periodic[0] && !found.empty() &&
+                         (x + found.front().begin == 0 || x + found.back().end == domain.size[0]);
+      const int between = opens ? block_.size(0) : little;
+      for (const RowPiece& piece : found) {
+        const bool first = pieces_.size() == first_piece_.back();
+        if (!first && piece.begin - pieces_.back().end <= between) {
+          pieces_.back().end = piece.end;
+        } else {
+          pieces_.push_back(piece);
+        }
+      }
+      first_piece_.push_back(pieces_.size());
+    }
+    Box<D> around = block_;
+    for (int k = 1; k < D; ++k) around.end[k] = around.begin[k] + block_.size(k) + 2;
+    first_run_.push_back(0);
+    for (int i = 0; i < row_count(around); ++i) {
+      Row row = row_of(around, i);
+      for (int& place : row) --place;
+      add_runs(row);
+      first_run_.push_back(runs_.size());
+    }
+  }
+
+  /// Whether all nodes are there.
+  [[nodiscard]] bool all() const { return first_piece_.empty(); }
+  /// Numbers in the array.
+  [[nodiscard]] std::ptrdiff_t count() const { return count_; }
+  [[nodiscard]] std::size_t first_piece(int row) const { return first_piece_[static_cast<std::size_t>(row)]; }
+  [[nodiscard]] const RowPiece& piece(std::size_t number) const { return pieces_[number]; }
+  [[nodiscard]] std::size_t bytes() const { return pieces_.size() * sizeof(RowPiece) + runs_.size() * sizeof(Run); }
+
+  /// What to add to x for a node's place in the array, where the node at x has one; as long as that goes on.
+  [[nodiscard]] std::ptrdiff_t start(int x, const Row& row) const {
+    const Run* const run = find(x, row);
+    return run == nullptr ? 0 : run->start;
+  }
+  [[nodiscard]] bool holds(int x, const Row& row) const { return find(x, row) != nullptr; }
+
+ private:
+  struct Run {
+    int begin, end;
+    std::ptrdiff_t start;
+  };
+
+  /// The runs of nodes of a row, in or around the block, that are in a piece or next to one.
+  void add_runs(const Row& row) {
+    std::vector<Run> near;
+    Box<D> beside{};
+    beside.end[0] = 1;
+    for (int k = 1; k < D; ++k) {
+      beside.begin[k] = std::max(row[k - 1] - 1, 0);
+      beside.end[k] = std::min(row[k - 1] + 2, block_.size(k));
+    }
+    for (int j = 0; j < row_count(beside); ++j) {
+      int i = 0;
+      const Row from_first = row_of(beside, j);
+      for (int k = D - 1; k > 0; --k) i = i * block_.size(k) + beside.begin[k] + from_first[k - 1];
+      for (std::size_t n = first_piece(i); n < first_piece(i + 1); ++n)
+        near.push_back({pieces_[n].begin - 1, pieces_[n].end + 1, 0});
+    }
+    std::sort(near.begin(), near.end(), [](const Run& a, const Run& b) { return a.begin < b.begin; });
+    const std::size_t first = runs_.size();
+    for (const Run& run : near) {
+      if (runs_.size() > first && run.begin <= runs_.back().end) {
+        runs_.back().end = std::max(runs_.back().end, run.end);
+      } else {
+        runs_.push_back(run);
+      }
+    }
+    for (std::size_t n = first; n < runs_.size(); ++n) {
+      runs_[n].start = count_ - runs_[n].begin;
+      count_ += runs_[n].end - runs_[n].begin;
+    }
+  }
+  [[nodiscard]] std::size_t number_of(const Row& row) const {
+    std::size_t number = 0;
+    for (int k = D - 1; k > 0; --k)
+      number = number * static_cast<std::size_t>(block_.size(k) + 2) + static_cast<std::size_t>(row[k - 1] + 1);
+    return number;
+  }
+  [[nodiscard]] const Run* find(int x, const Row& row) const {
+    const std::size_t number = number_of(row);
+    for (std::size_t n = first_run_[number]; n < first_run_[number + 1]; ++n) {
+      if (x < runs_[n].end) return x < runs_[n].begin ? nullptr : &runs_[n];
+    }
+    return nullptr;
+  }
+
+  Box<D> block_{};
+  std::ptrdiff_t count_ = 0;
+  std::vector<RowPiece> pieces_;
+  std::vector<Run> runs_;
+  std::vector<std::size_t> first_piece_, first_run_;  ///< of each row, and the end
+};
+
+}  // namespace rouleau::core
