@@ -8,30 +8,29 @@ function whenOf(run, position) {
   return stage.over === "strain" ? `strain ${format(run.strain[position])}` : `${format(run.time_s[position], 3)} s`;
 }
 
-/// A mean of summary.json with what it is known to: its measured error, else its standard deviation over the outputs.
-function meanOf(summary, name) {
-  const stage = (summary.rheology || []).findLast(s => typeof s.means?.[name]?.mean === "number");
+/// What a column of series.csv came to: its mean with a measured error or, where it is steady, a bar of 95 %; else its value at the end.
+function meanOf(run, name) {
+  const summary = run.summary || {}, stage = (summary.rheology || []).findLast(s => typeof s.means?.[name]?.mean === "number"), bar = summary.error_bars?.[name];
   if (!stage) return null;
-  const {mean, error, deviation, trend} = stage.means[name], bar = summary.error_bars?.[name], changes = trend ? `, still ${trend} there` : "";
-  if (typeof deviation !== "number" && typeof bar?.error !== "number") return null;  // a single output is the value of an instant
-  return typeof bar?.error === "number" ? {value: bar.value ?? mean, error: bar.error, about: `mean of the stage's second half, ± its measured error${changes}`}
-    : {value: mean, error: null, spread: error, about: `mean of the second half of stage ${stage.stage}; its outputs have a standard deviation of ${format(deviation, 2)}; no error bar was measured${changes}`};
+  const known = stage.statistics?.[name], last = run.series?.[name]?.findLast(v => v !== null);
+  if (typeof bar?.error === "number") return {value: bar.value ?? stage.means[name].mean, error: bar.error, about: "mean of the stage's second half, ± its measured error"};
+  if (typeof known?.mean === "number") return {value: known.mean, error: known.bar_95, about: `mean of stage ${stage.stage} from ${format(known.from_s, 3)} s on, ± its bar of 95 %, which knows chance and not the lattice`};
+  return typeof last === "number" ? {value: last, error: null, about: `at the end; no mean: ${known?.verdict ?? "too short"}`} : null;
 }
 
 /// A value with as many digits as its error, rounded up as the terminal does, has a meaning for: "0.347 ± 0.005"; without an
-/// error three, or fewer where its `spread` says so.
-function withError(value, error, spread = null) {
-  const known = error > 0 ? error : Math.max(spread ?? 0, value ? 10 ** (Math.floor(Math.log10(Math.abs(value))) - 2) : 0);
-  if (!(error > 0) && (!(spread > 0) || known > spread || Math.abs(value) < 1e-3 || Math.abs(value) >= 1e6)) return format(value, 3);
-  const size = Math.floor(Math.log10(known)), most = error > 0 ? 8 : 2 - Math.floor(Math.log10(Math.abs(value))), decimals = Math.max(0, Math.min(most, 1 - size - (known / 10 ** size >= 2 ? 1 : 0)));
-  const up = Math.ceil(known * 10 ** decimals * (1 - 1e-12)) / 10 ** decimals;
-  return (error > 0 ? `${value.toFixed(decimals)} ± ${up.toFixed(decimals)}` : value.toFixed(decimals)).replace("-", "−");
+/// error three.
+function withError(value, error) {
+  if (!(error > 0)) return format(value, 3);
+  const size = Math.floor(Math.log10(error)), decimals = Math.max(0, Math.min(8, 1 - size - (error / 10 ** size >= 2 ? 1 : 0)));
+  const up = Math.ceil(error * 10 ** decimals * (1 - 1e-12)) / 10 ** decimals;
+  return `${value.toFixed(decimals)} ± ${up.toFixed(decimals)}`.replace("-", "−");
 }
 
 /// A mean speed in the unit that keeps it readable.
-function speedWords({value, error, spread}) {
+function speedWords({value, error}) {
   const [unit, factor] = Math.abs(value) >= 1e-3 ? ["mm/s", 1e3] : ["µm/s", 1e6];
-  return `${withError(factor * value, factor * error, factor * spread)} ${unit}`;
+  return `${withError(factor * value, factor * error)} ${unit}`;
 }
 
 /// What the aggregates did: {sentences, numbers}, of runs with two cells or more.
@@ -57,8 +56,8 @@ function aggregation(run) {
 /// {sentences, numbers: [{value, label, about, position}]} of a run that has outputs; numbers by weight, the first four are shown.
 function resultOf(run) {
   const summary = run.summary || {}, {sentences, numbers} = aggregation(run), cells = run.cells?.types.length ?? 0, bars = summary.error_bars || {};
-  const viscosity = meanOf(summary, "relative_viscosity");
-  if (viscosity && cells) { numbers.push({value: withError(viscosity.value, viscosity.error, viscosity.spread), label: "relative viscosity", about: viscosity.about}); sentences.push(`The relative viscosity is ${withError(viscosity.value, viscosity.error, viscosity.spread)}.`); }
+  const viscosity = meanOf(run, "relative_viscosity");
+  if (viscosity && cells) { numbers.push({value: withError(viscosity.value, viscosity.error), label: "relative viscosity", about: viscosity.about}); sentences.push(`The relative viscosity is ${withError(viscosity.value, viscosity.error)}${viscosity.error === null ? " at the end" : ""}.`); }
   const deformations = (run.cells?.deformation ?? []).map(line => line.at(-1)).filter(v => v !== null);
   if (deformations.length) {
     const mean = deformations.reduce((a, b) => a + b) / deformations.length, value = withError(bars.deformation?.value ?? mean, bars.deformation?.error);
@@ -71,13 +70,13 @@ function resultOf(run) {
   if (cells === 1 && typeof angle === "number") numbers.push({value: `${withError(angle, (bars.angle_rad?.error ?? 0) * 180 / Math.PI)}°`, label: "angle of the long axis at the end", about: "against the flow, counter-clockwise"});
   const turns = (summary.rheology || []).at(-1)?.rotation?.[0];
   if (cells === 1 && turns?.turns >= 1) numbers.push({value: format(Math.abs(turns.tank_treading_rad_per_strain), 3), label: "tank-treading, rad per strain", about: `over ${turns.turns} whole turns of the outline`});
-  const flow = meanOf(summary, "flow_rate_m2_per_s"), speed = meanOf(summary, "mean_velocity_m_per_s"), depth = run.domain?.size_um[2];
+  const flow = meanOf(run, "flow_rate_m2_per_s"), speed = meanOf(run, "mean_velocity_m_per_s"), depth = run.domain?.size_um[2];
   if (speed) numbers.push({value: speedWords(speed), label: "mean velocity", about: speed.about});
   if (flow && summary.dimensions !== 3) numbers.push({value: `${format(flow.value, 3)} m²/s`, label: "flow rate per depth", about: flow.about});
   if (flow && summary.dimensions === 3 && depth) numbers.push({value: `${format(flow.value * depth * 1e-6, 3)} m³/s`, label: "flow rate", about: flow.about});
-  if (!cells && speed) sentences.push(`The fluid flows at ${speedWords(speed)} on average.`);
-  const layer = ["cell_free_layer_lower_m", "cell_free_layer_upper_m"].map(name => meanOf(summary, name)?.value).filter(v => typeof v === "number");
-  if (layer.length && layersAreThere(summary.rheology.at(-1).means)) numbers.push({value: `${format(1e6 * layer.reduce((a, b) => a + b) / layer.length, 3)} µm`, label: "cell-free layer", about: "mean of both walls over the second half of the last stage"});
+  if (!cells && speed) sentences.push(`The fluid flows at ${speedWords(speed)}${speed.error === null ? " at the end" : " on average"}.`);
+  const layer = ["cell_free_layer_lower_m", "cell_free_layer_upper_m"].map(name => meanOf(run, name)?.value).filter(v => typeof v === "number");
+  if (layer.length && layersAreThere(summary.rheology.at(-1).means)) numbers.push({value: `${format(1e6 * layer.reduce((a, b) => a + b) / layer.length, 3)} µm`, label: "cell-free layer", about: "mean of both walls"});
   if (typeof summary.conservation?.area_drift_max === "number" && cells) numbers.push({value: `${format(100 * summary.conservation.area_drift_max, 2)} %`, label: `largest ${summary.dimensions === 3 ? "volume" : "area"} drift`, about: "of any cell at any time: a measure of the error"});
   if (numbers.length && run.summary && !Object.keys(bars).length) sentences.push("No error bars were measured (rouleau run --error-bar).");
   if (!sentences.length) sentences.push(cells ? `${cells} ${cells === 1 ? "cell" : "cells"}, ${whenOf(run, run.step.length - 1)} at the end.` : "The fluid alone was simulated.");

@@ -104,13 +104,14 @@ function showHistory(run, summary) {
   const isResult = (means, name) => (attracts(run) || !name.startsWith("aggregate")) && (!name.startsWith("cell_free") || (!name.endsWith("empty") && layersAreThere(means)))
     && Math.abs(means[name].mean) >= 1e-9 * largest(name);  // below is rounding, of walls at rest for example
   const means = [...stages].reverse().flatMap(stage => Object.entries(stage.means || {}).filter(([, v]) => v && typeof v === "object" && typeof v.mean === "number")
-    .filter(([name]) => isResult(stage.means, name)).map(([name, {mean, error, deviation, trend}]) => {
+    .filter(([name]) => isResult(stage.means, name)).map(([name, {mean, deviation}]) => {
       const {title, factor} = drawnAs(name), scaled = v => typeof v !== "number" ? "–" : Math.abs(v) < 1e-12 * Math.abs(mean) ? "0" : format(factor * v, 2);
-      return {title, trend, stage: stage.stage, mean: withError(factor * mean, null, factor * (error ?? 0)), error: scaled(error), deviation: scaled(deviation)};
+      const known = stage.statistics?.[name], steady = typeof known?.mean === "number";
+      return {title, stage: stage.stage, mean: steady ? withError(factor * known.mean, factor * known.bar_95) : "–", parts: steady ? format(known.independent_parts, 2) : "–", half: format(factor * mean, 3), deviation: scaled(deviation), verdict: steady ? "" : known?.verdict ?? ""};
     }));
-  if (means.length) section("Means", table([{title: "Quantity", key: "title"}, {title: "Stage", key: "stage"}, {title: "Mean", key: "mean", number: true}, {title: "Standard error", key: "error", number: true}, {title: "Standard deviation", key: "deviation", number: true},
-    ...(means.some(r => r.trend) ? [{title: "Trend", value: r => r.trend ? `still ${r.trend}` : ""}] : [])], means, {stacked: true}),
-    note("Means in time over the second half of each stage; standard errors from four equal parts of it, which know nothing of the lattice; standard deviations of its outputs. What still rises or falls there is not steady."));
+  if (means.length) section("Means", table([{title: "Quantity", key: "title"}, {title: "Stage", key: "stage"}, {title: "Mean, 95 %", key: "mean", number: true}, {title: "Independent parts", key: "parts", number: true}, {title: "Second half", key: "half", number: true}, {title: "Standard deviation", key: "deviation", number: true},
+    ...(means.some(r => r.verdict) ? [{title: "No mean, since", key: "verdict"}] : [])], means, {stacked: true}),
+    note("Means from where a stage became steady, with bars that know chance and nothing of the lattice. Second half: plain means in time over it, and the standard deviation of its outputs."));
 }
 
 function showProvenance(run) {
