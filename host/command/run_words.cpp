@@ -197,6 +197,8 @@ void close_run(const std::filesystem::path& folder, const std::vector<std::strin
   std::cout << "\n";
   lines.erase(lines.begin());
   lines.insert(lines.end(), more.begin(), more.end());
+  if (summary.contains("error_bars") && summary.contains("cell_traffic") && summary["cell_traffic"]["cells_in"] != 0)
+    lines.emplace_back("cells come in at other places on other lattices: the error bars have that noise in them");
   for (const std::string& line : lines) std::cout << line << "\n";
   std::cout << "report: " << page.string() << "\n" << std::flush;  // before what std::cerr may have to add
 }

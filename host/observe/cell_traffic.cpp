@@ -1,9 +1,12 @@
 #include "cell_traffic.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "columns.hpp"
 #include "json/shown.hpp"
+#include "scene/lattice.hpp"
 #include "scene/scene.hpp"
 
 namespace rouleau::observe {
@@ -30,19 +33,68 @@ constexpr Observable opening_flow(const char* name, bool space, const char* doc)
   return made;
 }
 
+/// That of an opening, of an end's list, which may have ended before it.
+template <class V>
+V& at_opening(std::array<std::vector<V>, 2>& ends, int end, int opening) {
+  std::vector<V>& of_end = ends.at(static_cast<std::size_t>(end));
+  const auto k = static_cast<std::size_t>(opening);
+  if (of_end.size() <= k) of_end.resize(k + 1);
+  return of_end[k];
+}
+
+template <class V>
+V value_or(const std::vector<V>& values, std::size_t k, V otherwise) {
+  return k < values.size() ? values[k] : otherwise;
+}
+
+/// Of one of several openings at an end: what flows through it, and the cells.
+template <int end, int number>
+void add_opening(std::vector<Observable>& columns, bool cells) {
+  static const std::string name = (end == 0 ? "inlet_" : "outlet_") + std::to_string(number + 1);
+  static const std::string flow = name + "_flow", of_cells = name + "_cells";
+  const auto add = [&](Observable column) {
+    column.end = end, column.number = number;
+    columns.push_back(column);
+  };
+  constexpr auto flow_of = [](const Row& row) -> Value {
+    return value_or(row.output.opening_flow[end], number, std::nan(""));
+  };
+  constexpr auto cells_of = [](const Row& row) -> Value {
+    return (end == 0 ? 1 : -1) * value_or(row.output.cells_through[end], number, 0L);
+  };
+  constexpr const char* through = "flow along +x through one opening, by its number";
+  if (cells) {
+    const char* const doc =
+        end == 0 ? "cells that came in through it, less those that left" : "cells that left through it";
+    add({.name = of_cells, .unit = "", .doc = doc, .value = cells_of, .of_traffic = true});
+  } else {
+    add({.name = flow, .unit = "m2/s", .doc = through, .value = flow_of, .in_plane = true, .at_openings = true});
+    add({.name = flow, .unit = "m3/s", .doc = through, .value = flow_of, .in_space = true, .at_openings = true});
+  }
+}
+
+template <int... number>
+void add_openings(std::vector<Observable>& columns, bool cells, std::integer_sequence<int, number...>) {
+  (add_opening<0, number>(columns, cells), ...);
+  (add_opening<1, number>(columns, cells), ...);
+}
+
 constexpr const char* through_inlet = "flow through all of the inlet, along +x, at the first nodes behind it";
 constexpr const char* through_outlet = "likewise, of the outlet, at the last nodes before it";
 
 }  // namespace
 
 std::vector<Observable> columns_at_openings() {
-  return {opening_flow<&Snapshot::inlet_flow>("inlet_flow", false, through_inlet),
-          opening_flow<&Snapshot::inlet_flow>("inlet_flow", true, through_inlet),
-          opening_flow<&Snapshot::outlet_flow>("outlet_flow", false, through_outlet),
-          opening_flow<&Snapshot::outlet_flow>("outlet_flow", true, through_outlet),
-          at_opening<&Snapshot::inlet_pressure>("inlet_pressure", "Pa",
-                                                "mean of the fluid's nodes at the inlet, half a spacing behind it"),
-          at_opening<&Snapshot::outlet_pressure>("outlet_pressure", "Pa", "likewise, before the outlet")};
+  std::vector<Observable> all = {
+      opening_flow<&Snapshot::inlet_flow>("inlet_flow", false, through_inlet),
+      opening_flow<&Snapshot::inlet_flow>("inlet_flow", true, through_inlet),
+      opening_flow<&Snapshot::outlet_flow>("outlet_flow", false, through_outlet),
+      opening_flow<&Snapshot::outlet_flow>("outlet_flow", true, through_outlet),
+      at_opening<&Snapshot::inlet_pressure>("inlet_pressure", "Pa",
+                                            "mean of the fluid's nodes at the inlet, half a spacing behind it"),
+      at_opening<&Snapshot::outlet_pressure>("outlet_pressure", "Pa", "likewise, before the outlet")};
+  add_openings(all, false, std::make_integer_sequence<int, most_openings>());
+  return all;
 }
 
 std::vector<Observable> columns_of_traffic() {
@@ -50,15 +102,18 @@ std::vector<Observable> columns_of_traffic() {
     return Observable{
         .name = name, .unit = "", .doc = doc, .value = value, .chart = "Cells", .line = line, .of_traffic = true};
   };
-  return {column(
-              "cells_in", "number of cells that have come in through an opening since the run began",
-              [](const Row& row) -> Value { return row.output.cells_in; }, "came in"),
-          column(
-              "cells_inside", "number of cells that are there: as many rows cells.csv has at this instant",
-              [](const Row& row) -> Value { return row.output.cells_inside; }, "inside"),
-          column(
-              "cells_out", "number of cells that have left through an opening",
-              [](const Row& row) -> Value { return row.output.cells_out; }, "left")};
+  std::vector<Observable> all = {
+      column(
+          "cells_in", "number of cells that have come in through an opening since the run began",
+          [](const Row& row) -> Value { return row.output.cells_in; }, "came in"),
+      column(
+          "cells_inside", "number of cells that are there: as many rows cells.csv has at this instant",
+          [](const Row& row) -> Value { return row.output.cells_inside; }, "inside"),
+      column(
+          "cells_out", "number of cells that have left through an opening",
+          [](const Row& row) -> Value { return row.output.cells_out; }, "left")};
+  add_openings(all, true, std::make_integer_sequence<int, most_openings>());
+  return all;
 }
 
 bool has_traffic(const scene::Scene& scene) { return scene.domain.openings && !scene.cells.empty(); }
@@ -66,8 +121,11 @@ bool has_traffic(const scene::Scene& scene) { return scene.domain.openings && !s
 RunKind kind_of(const scene::Scene& scene) {
   const bool pulled = std::any_of(scene.stages.begin(), scene.stages.end(),
                                   [](const scene::Stage& stage) { return !stage.forces.empty(); });
-  return {scene.domain.dimension(), scene.domain.is_open(), has_traffic(scene),
-          pulled || scene.fluid.gravity != scene::Vector()};
+  RunKind kind(scene.domain.dimension(), scene.domain.is_open(), has_traffic(scene),
+               pulled || scene.fluid.gravity != scene::Vector());
+  for (const int end : {0, 1})
+    if (scene.domain.openings) kind.openings[end] = static_cast<int>(scene::open_parts(scene, end).size());
+  return kind;
 }
 
 void CellTraffic::begin_stage(const std::string& name, double time) {
@@ -80,18 +138,22 @@ auto CellTraffic::stage(double time) -> StageTraffic& {
   return stages_.back();
 }
 
-void CellTraffic::came(int cell, double volume, double time, int end) {
+void CellTraffic::came(int cell, double volume, double time, int end, int opening) {
   inside_[cell] = {time, volume, end == no_opening};
   if (end == no_opening) return;
   ++in_;
-  stage(time).in.at(static_cast<std::size_t>(end)) += volume;
+  ++at_opening(through_, end, opening);
+  Passed& there = at_opening(stage(time).ends, end, opening);
+  there.in += volume, ++there.cells_in;
 }
 
-void CellTraffic::left(int cell, double time, int end) {
+void CellTraffic::left(int cell, double time, int end, int opening) {
   const Visit visit = inside_.at(cell);
   inside_.erase(cell);
   ++out_;
-  stage(time).out.at(static_cast<std::size_t>(end)) += visit.volume;
+  --at_opening(through_, end, opening);
+  Passed& there = at_opening(stage(time).ends, end, opening);
+  there.out += visit.volume, ++there.cells_out;
   if (visit.placed) return;  // it was there before the run
   const double stay = time - visit.since;
   residence_.sum += stay;
@@ -100,16 +162,23 @@ void CellTraffic::left(int cell, double time, int end) {
   ++stayed_;
 }
 
-void CellTraffic::flowed(const std::array<double, 2>& along_x, double time) {
-  if (flows_) {
-    for (std::size_t end = 0; end < 2; ++end) {
-      const double along = (last_flow_[end] + along_x[end]) / 2 * (time - last_time_);
-      stage(time).flow[end] += end == 0 ? along : -along;
+void CellTraffic::flowed(const std::array<std::vector<double>, 2>& along_x, double time) {
+  for (const int end : {0, 1}) {
+    for (std::size_t k = 0; flows_ && k < along_x[end].size(); ++k) {
+      const double along = (last_flow_[end].at(k) + along_x[end][k]) / 2 * (time - last_time_);
+      at_opening(stage(time).ends, end, static_cast<int>(k)).flow += end == 0 ? along : -along;
     }
   }
   flows_ = true;
   last_flow_ = along_x;
   last_time_ = time;
+}
+
+double CellTraffic::come_in() const {
+  double sum = 0;
+  for (const StageTraffic& stage : stages_)
+    for (const Passed& opening : stage.ends[0]) sum += opening.flow;
+  return sum;
 }
 
 std::vector<int> CellTraffic::there() const {
@@ -122,19 +191,35 @@ void CellTraffic::tell(Snapshot& snapshot) const {
   snapshot.cells_in = in();
   snapshot.cells_inside = inside();
   snapshot.cells_out = out();
+  snapshot.cells_through = through_;
+}
+
+auto CellTraffic::Passed::operator+=(const Passed& more) -> Passed& {
+  in += more.in, out += more.out, flow += more.flow;
+  cells_in += more.cells_in, cells_out += more.cells_out;
+  return *this;
+}
+
+Json CellTraffic::Passed::summary(const std::string& unit) const {
+  return {{"cells_in", cells_in},
+          {"cells_out", cells_out},
+          {"volume_in", in},
+          {"volume_out", out},
+          {"flow_in", flow},
+          {"unit", unit},
+          {"discharge_hematocrit", json::number_or_null((in - out) / flow)}};
 }
 
 Json CellTraffic::summary(const std::string& unit) const {
   Json stages = Json::array();
   for (const StageTraffic& stage : stages_) {
     Json ends = Json::array();
-    for (std::size_t end = 0; end < 2; ++end) {
-      const double net = stage.in[end] - stage.out[end];
-      ends.push_back({{"volume_in", stage.in[end]},
-                      {"volume_out", stage.out[end]},
-                      {"flow_in", stage.flow[end]},
-                      {"unit", unit},
-                      {"discharge_hematocrit", json::number_or_null(net / stage.flow[end])}});
+    for (const std::vector<Passed>& end : stage.ends) {
+      Passed all;
+      Json openings = Json::array();
+      for (const Passed& opening : end) all += opening, openings.push_back(opening.summary(unit));
+      ends.push_back(all.summary(unit));
+      if (end.size() > 1) ends.back()["openings"] = std::move(openings);
     }
     stages.push_back({{"stage", stage.name}, {"ends", std::move(ends)}});
   }

@@ -22,7 +22,7 @@ bool has_traffic(const scene::Scene& scene);
 RunKind kind_of(const scene::Scene& scene);
 
 /// Counts cells that come and leave, and how much volume they and all that flows carry through the ends of x, in m3, in
-/// two dimensions in m2. It follows the run on its first rank. Each cell comes and leaves once.
+/// two dimensions in m2. Each cell comes and leaves once.
 class CellTraffic {
  public:
   static constexpr int no_opening = -1;
@@ -30,13 +30,16 @@ class CellTraffic {
   /// A stage begins, at a time of the run in s.
   void begin_stage(const std::string& name, double time);
   /// A cell of so much volume is there from now on. `end`: 0, through the lower end, or 1; `no_opening`: it was placed.
-  void came(int cell, double volume, double time, int end);
+  /// `opening`: which of those at the end (core::parts_of_section).
+  void came(int cell, double volume, double time, int end, int opening = 0);
   /// It leaves through an end. Throws std::out_of_range for a cell that is not there.
-  void left(int cell, double time, int end);
-  /// What flows along +x through both ends at this time, cells included, m3/s or m2/s; between two calls it changes
-  /// linearly.
-  void flowed(const std::array<double, 2>& along_x, double time);
+  void left(int cell, double time, int end, int opening = 0);
+  /// What flows along +x through each opening of both ends at this time, cells included, m3/s or m2/s; it changes
+  /// linearly between two calls.
+  void flowed(const std::array<std::vector<double>, 2>& along_x, double time);
 
+  /// What has flowed in through the lower end, less what flowed out there, since the run began.
+  [[nodiscard]] double come_in() const;
   [[nodiscard]] long in() const { return in_; }  ///< through openings, without those that were placed
   [[nodiscard]] long inside() const { return static_cast<long>(inside_.size()); }
   /// The cells that are there, ascending.
@@ -44,12 +47,13 @@ class CellTraffic {
   [[nodiscard]] long out() const { return out_; }
   void tell(Snapshot& snapshot) const;
   /// summary.json's "cell_traffic": {cells_in, cells_inside, cells_out, residence_time_s: {mean, least, most, cells} of
-  /// those that came in and left (null: none did), stages: [{stage, ends: [lower, upper]}]}, each end {volume_in,
-  /// volume_out (of cells), flow_in (all that came in less all that left), unit, discharge_hematocrit}: the net volume
-  /// of cells over that of all, null where nothing flowed. `unit`: of volumes, "m3" or "m2".
+  /// those that came in and left (null: none did), stages: [{stage, ends: [lower, upper]}]}, each end {cells_in,
+  /// cells_out, volume_in, volume_out (of cells), flow_in (all that came in less all that left), unit,
+  /// discharge_hematocrit}: the net volume of cells over that of all, null where nothing flowed; and where an end has
+  /// several, openings: the same of each. `unit`: of volumes, "m3" or "m2".
   [[nodiscard]] nlohmann::json summary(const std::string& unit) const;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(CellTraffic, inside_, in_, out_, stayed_, residence_, stages_, flows_, last_flow_,
-                                 last_time_)
+                                 last_time_, through_)
 
  private:
   struct StageTraffic;
@@ -63,10 +67,18 @@ class CellTraffic {
     double sum = 0, least = 0, most = 0;  ///< s
     NLOHMANN_DEFINE_TYPE_INTRUSIVE(Residence, sum, least, most)
   };
+  /// Of an opening, or an end: volume of cells, and of all into the domain.
+  struct Passed {
+    double in = 0, out = 0, flow = 0;
+    long cells_in = 0, cells_out = 0;
+    Passed& operator+=(const Passed& more);
+    [[nodiscard]] nlohmann::json summary(const std::string& unit) const;
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(Passed, in, out, flow, cells_in, cells_out)
+  };
   struct StageTraffic {
     std::string name;
-    std::array<double, 2> in{}, out{}, flow{};  ///< by end: volume of cells, and of all into the domain
-    NLOHMANN_DEFINE_TYPE_INTRUSIVE(StageTraffic, name, in, out, flow)
+    std::array<std::vector<Passed>, 2> ends{};  ///< by opening
+    NLOHMANN_DEFINE_TYPE_INTRUSIVE(StageTraffic, name, ends)
   };
 
   std::map<int, Visit> inside_;
@@ -74,8 +86,9 @@ class CellTraffic {
   Residence residence_;
   std::vector<StageTraffic> stages_;
   bool flows_ = false;  ///< what flows has been said in this stage
-  std::array<double, 2> last_flow_{};
+  std::array<std::vector<double>, 2> last_flow_{};
   double last_time_ = 0;
+  std::array<std::vector<long>, 2> through_{};  ///< cells that came in, less those that left, by opening
 };
 
 }  // namespace rouleau::observe

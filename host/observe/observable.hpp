@@ -1,6 +1,8 @@
 // What a column of a run's tables is, and the values that columns take from an output.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -34,13 +36,17 @@ using Value = std::variant<std::monostate, double, long, bool, std::string>;
 /// What a run has that some columns are for.
 struct RunKind {
   // NOLINTNEXTLINE(google-explicit-constructor): a number of dimensions says it of most
-  RunKind(int dimensions, bool openings = false, bool cells_pass = false, bool external_forces = false)
-      : dimension(dimensions), open(openings), traffic(cells_pass), forces(external_forces) {}
+  RunKind(int dimensions, bool is_open = false, bool cells_pass = false, bool external_forces = false)
+      : dimension(dimensions), open(is_open), traffic(cells_pass), forces(external_forces) {}
   int dimension;
-  bool open;     ///< fluid goes through openings
-  bool traffic;  ///< cells may come or leave
-  bool forces;   ///< those of stages, or gravity, act on cells
+  bool open;                      ///< fluid goes through openings
+  bool traffic;                   ///< cells may come or leave
+  bool forces;                    ///< those of stages, or gravity, act on cells
+  std::array<int, 2> openings{};  ///< how many each end of x has beside each other; 0 where that is not known
 };
+
+/// So many of an end's openings have columns.
+inline constexpr int most_openings = 8;
 
 struct Observable {
   std::string_view name;  ///< without the unit
@@ -55,10 +61,11 @@ struct Observable {
   bool at_openings = false;     ///< there only where fluid goes through openings
   bool of_traffic = false;      ///< there where cells may come or leave (has_traffic)
   bool of_forces = false;       ///< there where stages have forces on cells, or gravity acts
+  int end = -1, number = 0;     ///< there where this end of x has several openings, and this one among them
 
   [[nodiscard]] bool is_in(const RunKind& run) const {
     return !(run.dimension == 3 ? in_plane : in_space) && (run.open || !at_openings) && (run.traffic || !of_traffic) &&
-           (run.forces || !of_forces);
+           (run.forces || !of_forces) && (end < 0 || run.openings[end] > std::max(1, number));
   }
   /// The column's name: the name and the unit, "kinetic_energy_J_per_m".
   [[nodiscard]] std::string column() const;

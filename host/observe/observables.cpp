@@ -75,15 +75,17 @@ nlohmann::json columns_json() {
   for (const Table& table : tables()) {
     auto columns = nlohmann::json::array();
     for (const Observable& o : table.observables)
-      columns.push_back({{"column", o.column()},
-                         {"unit", o.unit},
-                         {"doc", o.doc},
-                         {"has_means", o.has_means},
-                         {"in_space", o.in_space},
-                         {"in_plane", o.in_plane},
-                         {"at_openings", o.at_openings},
-                         {"of_traffic", o.of_traffic},
-                         {"of_forces", o.of_forces}});
+      if (o.number == 0)
+        columns.push_back({{"column", o.column()},
+                           {"unit", o.unit},
+                           {"doc", o.doc},
+                           {"has_means", o.has_means},
+                           {"in_space", o.in_space},
+                           {"in_plane", o.in_plane},
+                           {"at_openings", o.at_openings},
+                           {"of_traffic", o.of_traffic},
+                           {"of_forces", o.of_forces},
+                           {"of_several_openings", o.end >= 0}});
     list.push_back({{"name", table.name}, {"columns", std::move(columns)}});
   }
   return list;

@@ -54,6 +54,10 @@ double observe_openings(const core::AnyFluid<D>& fluid, const scene::Scene& scen
   const double area = std::pow(units.length, D - 1), outside = *scene.domain.openings->back().pressure;
   snapshot.inlet_flow = units.to_si(lower.flow, units::dimension::velocity) * area;
   snapshot.outlet_flow = units.to_si(upper.flow, units::dimension::velocity) * area;
+  for (const double flow : lower.of_parts)
+    snapshot.opening_flow[0].push_back(units.to_si(flow, units::dimension::velocity) * area);
+  for (const double flow : upper.of_parts)
+    snapshot.opening_flow[1].push_back(units.to_si(flow, units::dimension::velocity) * area);
   snapshot.inlet_pressure = outside + units.to_si(lower.pressure, units::dimension::pressure);
   snapshot.outlet_pressure = outside + units.to_si(upper.pressure, units::dimension::pressure);
   return (lower.pressure - upper.pressure) / (scene.domain.nodes[0] - 1);

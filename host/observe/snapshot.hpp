@@ -140,6 +140,7 @@ struct Snapshot {
   double inlet_flow = std::numeric_limits<double>::quiet_NaN(),
          outlet_flow = inlet_flow;  ///< m2/s, in three dimensions m3/s, along +x; NaN without openings
   double inlet_pressure = inlet_flow, outlet_pressure = inlet_flow;  ///< Pa, likewise
+  std::array<std::vector<double>, 2> opening_flow{};                 ///< of each opening of both ends, as inlet_flow
   double cell_free_layer_lower = 0, cell_free_layer_upper = 0;       ///< m; NaN without walls or cells
   double cell_free_layer_empty = 0;  ///< share of the columns in which there is no cell; NaN as the layers
   double particle_stress = 0;        ///< xy, Pa: membranes and viscosity contrast, per area of the domain
@@ -149,6 +150,7 @@ struct Snapshot {
       0;  ///< relative: what the area correction kept from leaking within a strain of one, of the worst cell
   double mass_drift = 0;                               ///< relative
   long cells_in = 0, cells_inside = 0, cells_out = 0;  ///< since the run began (CellTraffic)
+  std::array<std::vector<long>, 2> cells_through{};    ///< in less out, of each opening; those without cells may lack
   EnergySnapshot energy;
   MembraneSnapshot membranes;
   FieldSnapshot fields;

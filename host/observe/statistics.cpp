@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "json/number_or_null.hpp"
+#include "json/shown.hpp"
 
 namespace rouleau::observe {
 

@@ -5,6 +5,7 @@
 
 #include "base/text.hpp"
 #include "flow.hpp"
+#include "scene/lattice.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
 #include "units/lattice_units.hpp"
@@ -106,6 +107,14 @@ void add_open_ends(const scene::Scene& scene, Rows& rows) {
     const std::string name = !domain.openings ? "" : end == 0 ? ", the inlet" : ", the outlet";
     rows.add(std::string("open at the ") + (end == 0 ? "lower" : "upper") + " end along x" + name, open,
              domain.in_plane() ? "m" : "m2", open / unit);
+    const std::vector<scene::OpenPart> parts = scene::open_parts(scene, end);
+    int number = 0;
+    for (const scene::OpenPart& part : parts.size() > 1 ? parts : std::vector<scene::OpenPart>())
+      rows.add((!domain.openings ? end == 0 ? "lower opening " : "upper opening "
+                : end == 0       ? "inlet "
+                                 : "outlet ") +
+                   std::to_string(++number) + ", around (" + scene::by_axes(part.at, 1e6, 4, " um", ", ") + ")",
+               part.area, domain.in_plane() ? "m" : "m2", part.area / unit);
   }
 }
 

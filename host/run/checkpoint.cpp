@@ -10,6 +10,7 @@
 #include "checkpoint_match.hpp"
 #include "core/solver/in_order.hpp"
 #include "run_state.hpp"
+#include "saved_cells.hpp"
 
 namespace rouleau::run {
 
@@ -20,7 +21,6 @@ using Json = nlohmann::json;
 std::string population_name(int q) { return "/populations/" + std::to_string(q); }
 std::string state_name(std::size_t k) { return "/membranes/state/" + std::to_string(k); }
 
-constexpr std::array places{"/membranes/x", "/membranes/y", "/membranes/z"};
 constexpr std::array velocities{"/membranes/velocity_x", "/membranes/velocity_y", "/membranes/velocity_z"};
 constexpr std::array indicator_places{"/indicator/x", "/indicator/y", "/indicator/z"};
 
@@ -33,45 +33,6 @@ auto arrays(Cells& m) {
   if (!m.position[2].empty())
     all.insert(all.end(), {std::pair{places[2], &m.position[2]}, std::pair{velocities[2], &m.velocity[2]}});
   return all;
-}
-
-void read(const files::CheckpointReader& reader, const std::string& path, std::vector<double>& values) {
-  reader.array(path, values.size(), values.data());
-}
-/// Of these parts of an array of all nodes.
-template <class Values>
-void read(const files::CheckpointReader& reader, const std::string& path, const std::vector<Range>& parts,
-          Values& values) {
-  for (const Range& part : parts) {
-    const auto begin = static_cast<std::size_t>(part.begin), end = static_cast<std::size_t>(part.end);
-    reader.part(path, values.size(), begin, end, values.data() + begin);
-  }
-}
-
-/// The boxes of all cells, whose nodes are not in memory all at once.
-template <int D>
-std::vector<core::BoundingBox<D>> read_boxes(const files::CheckpointReader& reader, const core::CellNodes& nodes) {
-  constexpr int at_once = 1 << 18;
-  std::vector<core::BoundingBox<D>> boxes;
-  boxes.reserve(nodes.cells.size());
-  core::CellNodes some;
-  auto& along = some.position;
-  for (int c = 0; c < nodes.cell_count();) {
-    const int first = nodes.cells[c].first;
-    some.cells.clear();
-    for (; c < nodes.cell_count() && (some.cells.empty() || nodes.cells[c].end() - first <= at_once); ++c) {
-      some.cells.push_back(nodes.cells[c]);
-      some.cells.back().first -= first;
-    }
-    const int count = some.cells.back().end();
-    for (int k = 0; k < D; ++k) {
-      along[k].resize(static_cast<std::size_t>(count));
-      reader.part(places[k], nodes.position[0].size(), static_cast<std::size_t>(first),
-                  static_cast<std::size_t>(first + count), along[k].data());
-    }
-    for (const core::BoundingBox<D>& box : core::boxes_of<D>(some)) boxes.push_back(box);
-  }
-  return boxes;
 }
 
 constexpr const char *contacts_array = "/membranes/contacts", *wall_contacts_array = "/membranes/wall_contacts",
@@ -100,20 +61,21 @@ template <int D>
 class CellArrays {
  public:
   /// `writer`: null on ranks that do not write. `ghosts`: null: this rank has all cells.
-  CellArrays(files::CheckpointWriter* writer, const core::CellNodes& cells, const core::GhostCells<D>* ghosts)
-      : writer_(writer), cells_(cells), ghosts_(ghosts) {}
+  CellArrays(files::CheckpointWriter* writer, const core::CellNodes& cells, const core::GhostCells<D>* ghosts,
+             const Kept& kept)
+      : writer_(writer), cells_(cells), ghosts_(ghosts), kept_(kept) {}
 
   /// A number of each node.
   template <class Values>
   void of_nodes(const std::string& path, const Values& values) {
-    write(path, cells_.position[0].size(), [&](int c, std::vector<double>& of_cell) {
+    write(path, kept_.nodes, [&](int c, std::vector<double>& of_cell) {
       const core::CellRange& cell = cells_.cells[c];
       of_cell.insert(of_cell.end(), values.data() + cell.first, values.data() + cell.end());
     });
   }
   /// A number of each cell; or none.
   void of_cells(const std::string& path, const std::vector<double>& values) {
-    write(path, values.size(), [&](int c, std::vector<double>& of_cell) {
+    write(path, std::min(kept_.cells, values.size()), [&](int c, std::vector<double>& of_cell) {
       if (!values.empty()) of_cell.push_back(values[c]);
     });
   }
@@ -147,7 +109,7 @@ class CellArrays {
     write(path, count, [&](int cell, std::vector<double>& values) {
       for (const core::ContactState& s : of_cell(cell)) values.insert(values.end(), s.value.begin(), s.value.end());
     });
-    return {{"variables", variables}, {"cells", memory.of_cell.size()}, {"pairs", pairs}};
+    return {{"variables", variables}, {"cells", std::min(kept_.cells, memory.of_cell.size())}, {"pairs", pairs}};
   }
 
  private:
@@ -155,7 +117,10 @@ class CellArrays {
   template <class Add>
   void write(const std::string& path, std::size_t count, Add add) {
     if (writer_ != nullptr) writer_->begin_array(path, count);
-    core::give_in_order<double>(ghosts_, cells_, add, [&](Range, const std::vector<double>& values) {
+    const auto add_kept = [&](int c, std::vector<double>& of_cell) {
+      if (static_cast<std::size_t>(c) < kept_.cells) add(c, of_cell);
+    };
+    core::give_in_order<double>(ghosts_, cells_, add_kept, [&](Range, const std::vector<double>& values) {
       if (writer_ != nullptr && !values.empty()) writer_->append(values);
     });
   }
@@ -163,6 +128,7 @@ class CellArrays {
   files::CheckpointWriter* writer_;
   const core::CellNodes& cells_;
   const core::GhostCells<D>* ghosts_;
+  Kept kept_;
 };
 
 /// A checkpoint that is whole and yet not what this program writes.
@@ -172,12 +138,12 @@ void require(bool fits, const files::CheckpointReader& reader, const char* what)
 
 /// `others`: how many there are that a cell may be in contact with.
 void restore_contacts(const files::CheckpointReader& reader, const Json& saved, const char* array, std::size_t others,
-                      const core::CellNodes& nodes, core::ContactMemory& memory) {
+                      const core::CellNodes& nodes, const Kept& kept, core::ContactMemory& memory) {
   memory.variables.clear();
   for (const Json& variable : saved.at("variables")) memory.variables.push_back(contact_variable(variable));
   const Json& cells = saved.at("cells");
-  require(cells == 0 || cells == nodes.cells.size(), reader, "contacts of another number of cells");
-  memory.of_cell.assign(cells, {});
+  require(cells == 0 || cells == kept.cells, reader, "contacts of another number of cells");
+  memory.of_cell.assign(cells == 0 ? 0 : nodes.cells.size(), {});
   std::vector<double> values = reader.array(array);
   auto next = values.begin();
   for (const Json& pair : saved.at("pairs")) {
@@ -219,7 +185,7 @@ Json save(CellArrays<D> to, const Cells& m) {
 
 /// `writer`: null on ranks that do not write.
 template <int D>
-Json save(files::CheckpointWriter* writer, core::AnySolver<D>& solver) {
+Json save(files::CheckpointWriter* writer, core::AnySolver<D>& solver, const Kept& kept) {
   core::AnyFluid<D>& fluid = solver.fluid();
   fluid.settle();
   const core::Domain<D>& domain = fluid.setting().domain;
@@ -232,7 +198,7 @@ Json save(files::CheckpointWriter* writer, core::AnySolver<D>& solver) {
   const std::size_t links = save_links(writer, fluid.link_memory());
   if (auto* const tasks = solver.cell_tasks()) {
     const core::DisplacementWatch::Memory& memory = tasks->viscosity_memory();
-    CellArrays<D> to(writer, solver.cells(), tasks->ghosts());
+    CellArrays<D> to(writer, solver.cells(), tasks->ghosts(), kept);
     for (int k = 0; k < D; ++k) to.of_nodes(indicator_places[k], memory.position[k]);
     to.of_cells("/indicator/limit", memory.limit);
     to.of_cells("/indicator/bound", memory.bound);
@@ -246,36 +212,36 @@ Json save(files::CheckpointWriter* writer, core::AnySolver<D>& solver) {
   return saved;
 }
 
-void restore_leakage(const files::CheckpointReader& reader, const Json& saved, core::CellNodes& cells) {
-  const Json& leakage = saved.at("leakage");
-  require(leakage == 0 || leakage == cells.cells.size(), reader, "leakages of another number of cells");
-  cells.area_leakage.resize(leakage);
-  read(reader, leakage_array, cells.area_leakage);
+void restore_leakage(const files::CheckpointReader& reader, const Json& saved, const Kept& kept,
+                     core::CellNodes& cells) {
+  const bool any = saved.at("leakage") != 0;
+  cells.area_leakage.resize(any ? cells.cells.size() : 0);
+  read_of_cells(reader, leakage_array, kept, cells.area_leakage);
 }
 
 template <class Cells>
-void restore_cells(const files::CheckpointReader& reader, const Json& saved, Cells& m) {
+void restore_cells(const files::CheckpointReader& reader, const Json& saved, const Kept& kept, Cells& m) {
   const std::vector<Range> known = m.known_nodes();
   m.largest_step.resize(m.cells.size());
   for (const auto& [path, values] : arrays(m)) {
     if (values == &m.largest_step) {
-      read(reader, path, *values);
+      read_of_cells(reader, path, kept, *values);
       for (const double step : *values) m.largest_step_of_others = std::max(m.largest_step_of_others, step);
     } else {
-      read(reader, path, known, *values);
+      read(reader, path, kept.nodes, known, *values);
     }
   }
-  restore_leakage(reader, saved, m);
+  restore_leakage(reader, saved, kept, m);
   m.state.clear();
   for (const Json& description : saved.at("state")) {
     m.state.push_back(element_state(description));
     m.state.back().value.resize(m.position[0].size());
-    read(reader, state_name(m.state.size() - 1), known, m.state.back().value);
+    read(reader, state_name(m.state.size() - 1), kept.nodes, known, m.state.back().value);
   }
   if (std::is_same_v<Cells, core::Membranes> || saved.contains("contacts"))
-    restore_contacts(reader, saved.at("contacts"), contacts_array, m.cells.size(), m, m.contacts);
+    restore_contacts(reader, saved.at("contacts"), contacts_array, m.cells.size(), m, kept, m.contacts);
   if (saved.contains("wall_contacts"))
-    restore_contacts(reader, saved["wall_contacts"], wall_contacts_array, 4, m, m.wall_contacts);
+    restore_contacts(reader, saved["wall_contacts"], wall_contacts_array, 4, m, kept, m.wall_contacts);
 }
 
 /// What a block has of an array with a row for each of the lattice's rows.
@@ -302,8 +268,9 @@ void Checkpoints::write(const plan::Plan& plan, int threads, const RunState& sta
   pending_ = true;
   step_ = state.steps;
   if (to_ != nullptr) writer_ = std::make_unique<files::CheckpointWriter>(to_->path());
-  const CellArrays<D> of_cells(writer_.get(), solver.cells(), solver.ghosts());
-  Json saved_membranes = save(of_cells, solver.cells()), saved_solver = save(writer_.get(), solver);
+  const Kept kept(plan, state, solver.cells());
+  const CellArrays<D> of_cells(writer_.get(), solver.cells(), solver.ghosts(), kept);
+  Json saved_membranes = save(of_cells, solver.cells()), saved_solver = save(writer_.get(), solver, kept);
   if (to_ == nullptr) return;
   writer_->facts(checkpoint_facts(plan, state, threads));
   Json saved{{"run", state},
@@ -336,11 +303,12 @@ Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, c
     complete_former_state<D>(run, plan);
     run.get_to(state);
     if (plan.scene->domain.openings) saved.at("traffic").get_to(state.traffic);
-    require(!plan.scene->domain.openings || state.traffic.fits(cells.cells.size()), *reader,
-            "another number of cells that may come in, which follows from hematocrit and durations");
-    if (take_part) take_part([&] { return read_boxes<D>(*reader, cells); });
+    const Kept kept(plan, state, cells);
+    require(kept.cells <= cells.cells.size() && state.traffic.fits(kept.cells), *reader,
+            "more cells that have come in than the stages of this scene leave room for");
+    if (take_part) take_part([&] { return read_boxes<D>(*reader, cells, kept); });
     require(state.fits(plan, cells), *reader, "counts of another scene");
-    restore_cells(*reader, saved.at("membranes"), cells);
+    restore_cells(*reader, saved.at("membranes"), kept, cells);
     cells.forget(cells.unknown_nodes());
     core::SolverState solver{
         .populations = [reader, block, domain = plan.scene->domain](
@@ -356,9 +324,9 @@ Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, c
     if (!cells.cells.empty()) {
       core::DisplacementWatch::Memory& memory = solver.viscosity = core::DisplacementWatch::Memory(cells);
       const std::vector<Range> known = cells.known_nodes();
-      for (int k = D - 1; k >= 0; --k) read(*reader, indicator_places[k], known, memory.position[k]);
-      read(*reader, "/indicator/limit", memory.limit);
-      read(*reader, "/indicator/bound", memory.bound);
+      for (int k = D - 1; k >= 0; --k) read(*reader, indicator_places[k], kept.nodes, known, memory.position[k]);
+      read_of_cells(*reader, "/indicator/limit", kept, memory.limit);
+      read_of_cells(*reader, "/indicator/bound", kept, memory.bound);
     }
     return {std::move(solver), saved.at("directory").get<files::DirectoryMark>()};
   } catch (const Json::exception& error) {

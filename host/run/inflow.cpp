@@ -28,27 +28,35 @@ Inflow<D>::Inflow(const plan::Plan& plan, int stage, const core::BasicSolverSetu
       spacing_(scene::lattice_spacing(*plan.scene)) {
   if (feed_ == nullptr) return;
   const core::Section section = core::section_at(domain_, setup.solid.get(), setup.walls, 0);
-  const double mean = setup.openings->front().value;
+  const core::Opening& inlet = setup.openings->front();
+  const bool by_velocity = inlet.kind == core::Opening::Kind::velocity;
+  const double mean = by_velocity ? inlet.value : section.mean_driven + section.mean_dragged;
   double sum = 0, nodes = 0;
   for (std::size_t row = 0; row < section.driven.size(); ++row) {
     flux_.push_back(sum += std::max(0.0, section.velocity(row, mean)));
     nodes += section.driven[row] != 0 ? 1 : 0;
   }
+  cells_per_content_ = feed_->hematocrit / shape::enclosed_by(plan.scene->cell_types[feed_->type]);
   // The mean is that over the nodes, and gives the flow through the true section.
   const double flow = mean * nodes * std::pow(spacing_, D) / plan.stages[stage].units.time;
-  cells_per_second_ = feed_->hematocrit * flow / shape::enclosed_by(plan.scene->cell_types[feed_->type]);
+  if (by_velocity) cells_per_second_ = cells_per_content_ * flow;
 }
 
 template <int D>
-int Inflow<D>::due(double time) const {
-  return std::min(most_, static_cast<int>(std::lround(time * cells_per_second_)));
+double Inflow<D>::expected(double time, double come_in) const {
+  return measures() ? come_in * cells_per_content_ : time * cells_per_second_;
 }
 
 template <int D>
-std::vector<core::Cells<D>> Inflow<D>::places(int cell, long step) const {
-  const auto of_step = static_cast<std::uint64_t>(step);
-  std::seed_seq seeds{feed_->seed, static_cast<std::uint32_t>(cell), static_cast<std::uint32_t>(of_step),
-                      static_cast<std::uint32_t>(of_step >> 32)};
+int Inflow<D>::due(double time, double come_in) const {
+  return static_cast<int>(std::lround(std::clamp(expected(time, come_in), 0.0, static_cast<double>(most_))));
+}
+
+template <int D>
+std::vector<core::Cells<D>> Inflow<D>::places(int cell, double time, double come_in) const {
+  constexpr double draws = 32;  // while one cell comes in
+  const double waited = std::max(0.0, expected(time, come_in) - (cell + 0.5));
+  std::seed_seq seeds{feed_->seed, static_cast<std::uint32_t>(cell), static_cast<std::uint32_t>(waited * draws)};
   shape::RandomNumbers numbers(seeds);
   std::vector<core::Cells<D>> found;
   for (int i = 0; i < places_at_once; ++i) {
@@ -60,10 +68,7 @@ std::vector<core::Cells<D>> Inflow<D>::places(int cell, long step) const {
     }
     core::Cells<D> cell_there = none_;
     plan::add_placed(cell_there, placement, spacing_);
-    core::Vec<D> move = way_in(core::box_of<D>(cell_there, 0), numbers);
-    for (int k = 0; k < D; ++k) {
-      for (double& place : cell_there.position[k]) place += move[k];
-    }
+    move(cell_there, way_in(core::box_of<D>(cell_there, 0), numbers));
     if (fits(cell_there)) found.push_back(std::move(cell_there));
   }
   return found;
@@ -73,12 +78,40 @@ std::vector<core::Cells<D>> Inflow<D>::places(int cell, long step) const {
 template <int D>
 core::Vec<D> Inflow<D>::way_in(const core::BoundingBox<D>& box, shape::RandomNumbers& numbers) const {
   const double room = feed_->length / spacing_ - 0.5 - lowest() - (box.most[0] - box.least[0]);
-  const auto drawn = std::upper_bound(flux_.begin(), flux_.end() - 1, numbers.below_one() * flux_.back());
-  const auto row = core::row_of(domain_.block, static_cast<int>(drawn - flux_.begin()));
-  core::Vec<D> move;
-  move[0] = lowest() - box.least[0] + numbers.below_one() * std::max(0.0, room);
-  for (int k = 1; k < D; ++k) move[k] = row[k - 1] + numbers.below_one();
-  return move;
+  core::Vec<D> by;
+  by[0] = lowest() - box.least[0] + numbers.below_one() * std::max(0.0, room);
+  // Along one axis after another, the last first: rows [first, first + count) lie at what has been drawn so far.
+  std::size_t first = 0, count = flux_.size();
+  for (int k = D - 1; k > 0; --k) {
+    const std::size_t rows = count / static_cast<std::size_t>(domain_.size[k]);  // at each place along it
+    const auto up_to = [&](std::size_t place) {
+      const std::size_t end = first + place * rows;
+      return end == 0 ? 0 : flux_[end - 1];
+    };
+    const double wanted = up_to(0) + numbers.below_one() * (up_to(count / rows) - up_to(0));
+    std::size_t place = 0;
+    while (place + 1 < count / rows && !(wanted < up_to(place + 1))) ++place;
+    const double within = up_to(place + 1) - up_to(place);
+    by[k] = static_cast<double>(place) + (within > 0 ? (wanted - up_to(place)) / within : 0);
+    first += place * rows, count = rows;
+  }
+  return by;
+}
+
+template <int D>
+void Inflow<D>::move(core::Cells<D>& cell, const core::Vec<D>& by) {
+  for (int k = 0; k < D; ++k) {
+    for (double& place : cell.position[k]) place += by[k];
+  }
+}
+
+template <int D>
+double Inflow<D>::draw_back(core::Cells<D>& cell) const {
+  const core::BoundingBox<D> box = core::box_of<D>(cell, 0);
+  core::Vec<D> back = core::Vec<D>::Zero();
+  back[0] = lowest() - box.least[0];
+  move(cell, back);
+  return std::max(0.0, feed_->length / spacing_ - 0.5 - (box.most[0] + back[0]));
 }
 
 template <int D>
@@ -92,9 +125,10 @@ bool Inflow<D>::fits(const core::Cells<D>& cell) const {
 }
 
 template <int D>
-bool Inflow<D>::is_apart(const core::Cells<D>& cell, const core::Cells<D>& others, int other) const {
-  const core::BoundingBox<D> box = core::box_of<D>(cell, 0), its = core::box_of<D>(others, other);
-  if (core::distance_along_axes(box, its, domain_) > kept_apart) return true;
+double Inflow<D>::way(const core::Cells<D>& cell, const core::Cells<D>& others, int other, double most) const {
+  core::BoundingBox<D> box = core::box_of<D>(cell, 0), its = core::box_of<D>(others, other);
+  box.most[0] += most;
+  if (core::distance_along_axes(box, its, domain_) > kept_apart) return most;
   core::Vec<D> nearest;  // the image of the other one
   for (int k = 0; k < D; ++k) {
     const double period = domain_.period(k), between = box.least[k] + box.most[k] - its.least[k] - its.most[k];
@@ -103,27 +137,28 @@ bool Inflow<D>::is_apart(const core::Cells<D>& cell, const core::Cells<D>& other
   // Along a short period the images on both sides of it are near, too.
   int images = 1;
   for (int k = 1; k < D; ++k) images *= domain_.periodic[k] ? 3 : 1;
-  for (int image = 0; image < images; ++image) {
+  for (int image = 0; image < images && most >= 0; ++image) {
     core::Vec<D> move = nearest;
     for (int k = 1, rest = image; k < D; ++k) {
       if (!domain_.periodic[k]) continue;
       move[k] += (rest % 3 - 1) * domain_.period(k);
       rest /= 3;
     }
-    if (!is_apart(cell, others, other, move)) return false;
+    most = way_beside(cell, others, other, move, most);
   }
-  return true;
+  return most;
 }
 
 template <int D>
-bool Inflow<D>::is_apart(const core::Cells<D>& cell, const core::Cells<D>& others, int other,
-                         const core::Vec<D>& move) const {
+double Inflow<D>::way_beside(const core::Cells<D>& cell, const core::Cells<D>& others, int other,
+                             const core::Vec<D>& move, double most) const {
   const auto node = [](const core::Cells<D>& of, int i) {
     core::Vec<D> place;
     for (int k = 0; k < D; ++k) place[k] = of.position[k][i];
     return place;
   };
-  const core::BoundingBox<D> box = core::box_of<D>(cell, 0);
+  core::BoundingBox<D> box = core::box_of<D>(cell, 0);
+  box.most[0] += most;
   const core::CellRange& range = others.cells[other];
   for (int i = range.first; i < range.end(); ++i) {
     const core::Vec<D> place = node(others, i) + move;
@@ -131,11 +166,17 @@ bool Inflow<D>::is_apart(const core::Cells<D>& cell, const core::Cells<D>& other
     for (int k = 0; k < D; ++k)
       near = near && place[k] > box.least[k] - kept_apart && place[k] < box.most[k] + kept_apart;
     for (int j = 0; near && j < cell.node_count(); ++j) {
-      if ((node(cell, j) - place).squaredNorm() < kept_apart * kept_apart) return false;
+      core::Vec<D> apart = place - node(cell, j);
+      const double ahead = apart[0];
+      apart[0] = 0;
+      const double beside = kept_apart * kept_apart - apart.squaredNorm();
+      if (ahead * ahead < beside) return -1;
+      if (beside > 0 && ahead > 0) most = std::min(most, ahead - std::sqrt(beside));
     }
   }
-  return !plan::encloses(cell, 0, node(others, range.first) + move) &&
-         !plan::encloses(others, other, node(cell, 0) - move);
+  const bool apart = !plan::encloses(cell, 0, node(others, range.first) + move) &&
+                     !plan::encloses(others, other, node(cell, 0) - move);
+  return apart ? most : -1;
 }
 
 template class Inflow<2>;

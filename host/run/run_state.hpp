@@ -46,15 +46,15 @@ class PassCosts {
 
 /// Cells that come and go through openings.
 struct TrafficState {
-  std::size_t cells_of_scene = 0;  ///< those that may come in among them
-  long next = 0;                   ///< step of the run at which to look who comes and goes
+  long next = 0;  ///< step of the run at which to look who comes and goes
   observe::CellTraffic cells;
-  /// Whether it is about cells of a scene with so many.
+  bool looked = false;  ///< and what flows is still to be measured
+  /// Whether it is about so many cells, those that have left among them.
   [[nodiscard]] bool fits(std::size_t count) const {
     const std::vector<int> there = cells.there();
-    return cells_of_scene == count && (there.empty() || (there.front() >= 0 && there.back() < static_cast<int>(count)));
+    return there.empty() || (there.front() >= 0 && there.back() < static_cast<int>(count));
   }
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(TrafficState, cells_of_scene, next, cells)
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(TrafficState, next, cells, looked)
 };
 
 struct RunState {

@@ -231,6 +231,7 @@ class Simulation final : StepHooks {
     course_.count_to(step);
     solver().end_messages();
     if (fails(monitor::check_nodes(solver(), scene().checks.node_step, setting()))) return false;
+    traffic_.measure();
     if (checkpoints_.pending()) {
       observe::Observer look = state_.observer;  // one that leaves no trace
       checkpoints_.settle(!monitor::check_state(look, solver(), setting(), plan_));
@@ -290,10 +291,7 @@ class Simulation final : StepHooks {
     observe::Snapshot snapshot = state_.observer.observe(solver(), fluid, setting(), with_fields);
     if (ranks().first()) {
       course_.date(snapshot);
-      if (scene().domain.is_open()) {
-        state_.traffic.cells.flowed({snapshot.inlet_flow, snapshot.outlet_flow}, snapshot.time);
-        state_.traffic.cells.tell(snapshot);
-      }
+      if (scene().domain.is_open()) state_.traffic.cells.tell(snapshot);
       const units::LatticeUnits& units = setting().units;
       state_.energy.follow(snapshot, setting().is_driven() || solver().setup().external.any(),
                            units.to_si(solver().slight_energy(), units::dimension::energy_per_depth) /

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "core/fluid/openings/section.hpp"
+#include "observe/rheology.hpp"
 #include "shape/extent.hpp"
 
 namespace rouleau::run {
@@ -21,7 +23,6 @@ template <int D>
 Traffic<D>::Traffic(const plan::Plan& plan, Engine<D>& engine, RunState& state)
     : plan_(plan), engine_(engine), state_(state) {
   if (!is_open()) return;
-  state.traffic.cells_of_scene = plan.scene->cells.size();
   for (const scene::CellType& type : plan.scene->cell_types) content_.push_back(shape::enclosed_by(type));
   for (std::size_t c = 0; c < plan.scene->placed().size(); ++c) {
     state.traffic.cells.came(static_cast<int>(c), content_[plan.scene->cells[c].type], 0,
@@ -41,6 +42,7 @@ bool Traffic<D>::due() {
   TrafficState& traffic = state_.traffic;
   if (!is_open() || state_.steps < traffic.next) return false;
   traffic.next = state_.steps + steps_to_next();
+  traffic.looked = true;
   change_ = {};
   find_gone();
   find_come(state_.time_at(plan_.stages[state_.stage]));
@@ -50,32 +52,33 @@ bool Traffic<D>::due() {
 template <int D>
 void Traffic<D>::find_gone() {
   constexpr double below_arrivals = 1.5;  // spacings: what has just come does not go
-  std::vector<int> mine;
+  std::vector<Departure> mine;
   const auto& cells = engine_.cells();
   for (const int c : cells.own_cells()) {
     const core::BoundingBox<D> box = core::box_of<D>(cells, c);
     const bool at_upper = box.most[0] > inflow().highest(),
                at_lower = box.least[0] < inflow().lowest() - below_arrivals;
-    if (at_upper || at_lower) mine.push_back(at_upper ? c : ~c);
+    const int end = at_upper ? upper_end : lower_end;
+    if (at_upper || at_lower) mine.push_back({c, end, opening_at(end, cells, cells.cells[c])});
   }
-  for (const std::vector<int>& of_rank : core::all_of(engine_.ranks(), std::move(mine)))
-    for (const int c : of_rank) change_.gone.push_back({c < 0 ? ~c : c, c < 0 ? lower_end : upper_end});
+  for (const std::vector<Departure>& of_rank : core::all_of(engine_.ranks(), std::move(mine)))
+    change_.gone.insert(change_.gone.end(), of_rank.begin(), of_rank.end());
   std::sort(change_.gone.begin(), change_.gone.end(), [](auto& a, auto& b) { return a.cell < b.cell; });
 }
 
 template <int D>
 void Traffic<D>::find_come(double time) {
   const int first = static_cast<int>(plan_.scene->placed().size());
-  for (int k = static_cast<int>(state_.traffic.cells.in()); k < inflow().due(time); ++k) {
-    auto nodes = free_place(first + k);
+  for (int k = static_cast<int>(state_.traffic.cells.in()); k < due_by(time); ++k) {
+    auto nodes = free_place(k, time);
     if (!nodes) return;  // it waits, and those behind it
     change_.come.push_back({first + k, *std::move(nodes)});
   }
 }
 
 template <int D>
-auto Traffic<D>::free_place(int cell) -> std::optional<typename Engine<D>::Cells> {
-  auto tries = inflow().places(cell, state_.steps);
+auto Traffic<D>::free_place(int cell, double time) -> std::optional<typename Engine<D>::Cells> {
+  auto tries = inflow().places(cell, time, state_.traffic.cells.come_in());
   looks_in_vain_ = tries.empty() ? looks_in_vain_ + 1 : 0;
   if (looks_in_vain_ > most_looks_in_vain) {
     const scene::Scene& scene = *plan_.scene;
@@ -84,19 +87,67 @@ auto Traffic<D>::free_place(int cell) -> std::optional<typename Engine<D>::Cells
         "no place and no angle was found behind the inlet at which such a cell keeps two lattice spacings from walls",
         {"take a wider inlet, a smaller cell, or a finer lattice"});
   }
-  const auto& cells = engine_.cells();
-  std::vector<char> taken(tries.size(), 0);
-  for (std::size_t i = 0; i < tries.size(); ++i) {
-    const auto is_near = [&](const auto& others, int other) { return !inflow().is_apart(tries[i], others, other); };
-    for (const Arrival& other : change_.come) taken[i] = taken[i] != 0 || is_near(other.nodes, 0) ? 1 : 0;
-    for (const int other : cells.own_cells()) taken[i] = taken[i] != 0 || is_near(cells, other) ? 1 : 0;
+  const std::vector<double> here = ways(tries, std::vector(tries.size(), 0.0));
+  if (const auto free = std::find(here.begin(), here.end(), 0.0); free != here.end())
+    return std::move(tries[static_cast<std::size_t>(free - here.begin())]);
+  std::vector<double> most;
+  for (auto& attempt : tries) most.push_back(inflow().draw_back(attempt));
+  std::vector<double> far = ways(tries, std::move(most));
+  for (std::size_t left = tries.size(); left > 0; --left) {
+    const auto best = std::max_element(far.begin(), far.end());
+    if (*best < 0) break;
+    core::Vec<D> along = core::Vec<D>::Zero();
+    along[0] = std::exchange(*best, -1);
+    auto& attempt = tries[static_cast<std::size_t>(best - far.begin())];
+    inflow().move(attempt, along);
+    if (inflow().fits(attempt)) return std::move(attempt);
   }
-  for (const std::vector<char>& of_rank : core::all_of(engine_.ranks(), taken)) {
-    for (std::size_t i = 0; i < taken.size(); ++i) taken[i] = taken[i] != 0 || of_rank[i] != 0 ? 1 : 0;
+  return std::nullopt;
+}
+
+template <int D>
+std::vector<double> Traffic<D>::ways(const std::vector<typename Engine<D>::Cells>& cells, std::vector<double> most) {
+  const auto& there = engine_.cells();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto shorten = [&](const auto& others, int other) {
+      if (most[i] >= 0) most[i] = inflow().way(cells[i], others, other, most[i]);
+    };
+    for (const Arrival& other : change_.come) shorten(other.nodes, 0);
+    for (const int other : there.own_cells()) shorten(there, other);
   }
-  const auto free = std::find(taken.begin(), taken.end(), 0);
-  if (free == taken.end()) return std::nullopt;
-  return std::move(tries[static_cast<std::size_t>(free - taken.begin())]);
+  for (const std::vector<double>& of_rank : core::all_of(engine_.ranks(), most)) {
+    for (std::size_t i = 0; i < most.size(); ++i) most[i] = std::min(most[i], of_rank[i]);
+  }
+  return most;
+}
+
+template <int D>
+void Traffic<D>::measure() {
+  if (!std::exchange(state_.traffic.looked, false)) return;
+  const scene::StageSetting& setting = plan_.stages[state_.stage];
+  core::AnyFluid<D>& fluid = engine_.solver().fluid();
+  fluid.settle();
+  observe::Snapshot now;
+  observe::observe_openings(fluid, *plan_.scene, setting.units, now);
+  state_.traffic.cells.flowed(now.opening_flow, state_.time_at(setting));
+}
+
+template <int D>
+int Traffic<D>::opening_at(int end, const core::Cells<D>& cells, const core::CellRange& cell) const {
+  const core::BasicSolverSetup<D>& setup = engine_.solver().setup();
+  const core::Domain<D>& domain = setup.domain;
+  const auto is_fluid = [&](const auto& node) { return !setup.solid || !setup.solid->at(node); };
+  const std::vector<int> openings =
+      core::parts_of_section<D>(domain, end == lower_end ? 0 : domain.size[0] - 1, is_fluid);
+  for (int i = cell.first; i < cell.end(); ++i) {
+    int row = 0;
+    for (int k = D - 1; k > 0 && row >= 0; --k) {
+      const int place = domain.wrapped(k, static_cast<int>(std::lround(cells.position[k][i])));
+      row = place < 0 ? -1 : row * domain.size[k] + place;
+    }
+    if (row >= 0 && openings[row] >= 0) return openings[row];
+  }
+  return 0;
 }
 
 template <int D>
@@ -107,10 +158,12 @@ auto Traffic<D>::take() -> Change {
   engine_.change_cells(gone, change.come);
   TrafficState& traffic = state_.traffic;
   const double time = state_.time_at(plan_.stages[state_.stage]);
-  for (const Departure& departure : change.gone) traffic.cells.left(departure.cell, time, departure.end);
+  for (const Departure& departure : change.gone)
+    traffic.cells.left(departure.cell, time, departure.end, departure.opening);
   for (const Arrival& arrival : change.come) {
     state_.observer.begin_with(arrival.nodes, 0, arrival.cell);
-    traffic.cells.came(arrival.cell, content_[plan_.scene->cells[arrival.cell].type], time, lower_end);
+    traffic.cells.came(arrival.cell, content_[plan_.scene->cells[arrival.cell].type], time, lower_end,
+                       opening_at(lower_end, arrival.nodes, arrival.nodes.cells[0]));
   }
   return change;
 }

@@ -18,7 +18,7 @@ class Traffic {
  public:
   using Arrival = typename Engine<D>::Arrival;
   struct Departure {
-    int cell, end;  ///< through the lower end of x, 0, or the upper one, 1
+    int cell, end, opening;  ///< through the lower end of x, 0, or the upper one, 1, and which opening there
   };
   struct Change {
     std::vector<Departure> gone;
@@ -34,7 +34,9 @@ class Traffic {
   /// Whether that was so, and is still to be done.
   [[nodiscard]] bool found() const { return change_.any(); }
   /// How many have come in after so long, s, or wait for room.
-  [[nodiscard]] int due_by(double time) { return inflow().due(time); }
+  [[nodiscard]] int due_by(double time) { return inflow().due(time, state_.traffic.cells.come_in()); }
+  /// When the forces of a step are known: what flows is measured if due() has looked before this step.
+  void measure();
   /// What due() has found is done.
   Change take();
   /// The step of the stage at which it looks again.
@@ -44,10 +46,14 @@ class Traffic {
   [[nodiscard]] long steps_to_next() const;
   [[nodiscard]] bool is_open() const { return observe::has_traffic(*plan_.scene); }
   [[nodiscard]] const Inflow<D>& inflow();
+  /// Which opening of an end a cell is in front of: its first node that is in front of any.
+  [[nodiscard]] int opening_at(int end, const core::Cells<D>& cells, const core::CellRange& cell) const;
   void find_gone();
   void find_come(double time);
   /// The first of these places that is free on all ranks; none: none is.
-  [[nodiscard]] std::optional<typename Engine<D>::Cells> free_place(int cell);
+  [[nodiscard]] std::optional<typename Engine<D>::Cells> free_place(int cell, double time);
+  /// How far each cell can move along x, at most so far, before it comes too near another one on any rank.
+  [[nodiscard]] std::vector<double> ways(const std::vector<typename Engine<D>::Cells>& cells, std::vector<double> most);
 
   const plan::Plan& plan_;
   Engine<D>& engine_;

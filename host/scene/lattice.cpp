@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/fluid/openings/section.hpp"
 #include "core/fluid/solid_nodes.hpp"
 #include "scene_reader.hpp"
+#include "units/lattice_units.hpp"
 
 namespace rouleau::scene {
 
@@ -72,6 +74,47 @@ std::optional<LatticeSize> refined(LatticeSize nodes, int factor) {
 
 int fewest_ranks(const Domain& domain) {
   return static_cast<int>(std::ceil(domain.node_count() / static_cast<double>(most_nodes_of_block)));
+}
+
+namespace {
+
+template <int D>
+std::vector<OpenPart> parts_at(const Scene& scene, int end) {
+  const core::Domain<D> domain = lattice_domain<D>(scene);
+  const core::RegionPointer<D> region = fluid_region<D>(scene);
+  const double spacing = lattice_spacing(scene);
+  std::vector<OpenPart> found;
+  std::vector<Vector> places;  // of all nodes, row after row
+  const int column = end == 0 ? 0 : domain.size[0] - 1;
+  const std::vector<int> parts = core::parts_of_section<D>(domain, column, [&](const std::array<int, D>& node) {
+    core::Vec<D> place;
+    Vector at = Vector::filled(D, end == 0 ? 0 : scene.domain.size[0]);
+    for (int k = 0; k < D; ++k) place[k] = node[k];
+    for (int k = 1; k < D; ++k) at[k] = units::coordinate(node[k], spacing);
+    places.push_back(at);
+    return !region || region->distance(place).value > 0;
+  });
+  const double of_node = std::pow(spacing, D - 1);
+  for (std::size_t row = 0; row < parts.size(); ++row) {
+    const int part = parts[row];
+    if (part < 0) continue;
+    if (part == static_cast<int>(found.size())) found.push_back({0, places[row]});
+    OpenPart& of = found[part];
+    of.area += of_node;
+    for (int k = 1; k < D; ++k) {  // the mean of the images that lie nearest to it
+      double apart = places[row][k] - of.at[k];
+      if (domain.periodic[k]) apart -= scene.domain.size[k] * std::round(apart / scene.domain.size[k]);
+      of.at[k] += apart * of_node / of.area;
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<OpenPart> open_parts(const Scene& scene, int end) {
+  return in_dimension(scene.domain.dimension(),
+                      [&]<int D>(std::integral_constant<int, D>) { return parts_at<D>(scene, end); });
 }
 
 }  // namespace rouleau::scene

@@ -29,6 +29,14 @@ core::Domain<D> lattice_domain(const Scene& scene);
 template <int D>
 core::RegionPointer<D> fluid_region(const Scene& scene);
 
+/// One of the openings that an end of x has beside each other.
+struct OpenPart {
+  double area;  ///< m2, or m in two dimensions
+  Vector at;    ///< its middle, m
+};
+/// Those at the lower end, 0, or the upper one, 1, in the order of core::parts_of_section.
+std::vector<OpenPart> open_parts(const Scene& scene, int end);
+
 /// Its layers of other viscosities.
 std::vector<core::Layer> lattice_layers(const Scene& scene);
 

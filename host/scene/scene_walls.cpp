@@ -259,10 +259,6 @@ Opening read_inlet(const SceneFields& fields, const std::vector<CellType>& types
   }
   fields.attempt([&] {
     if (!fields.has(cells)) return;
-    if (!by_velocity)
-      fields.refuse_key(cells,
-                        "cells come in with a mean velocity, and this inlet has a pressure\n"
-                        "give mean_velocity in place of pressure, or leave the cells out");
     inlet.cells = read_feed(fields, cells, types);
   });
   return inlet;

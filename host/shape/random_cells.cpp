@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "extent.hpp"
 #include "outline.hpp"
+#include "scene/driving_flow.hpp"
 #include "scene/scene_reader.hpp"
 
 namespace rouleau::shape {
@@ -62,10 +63,18 @@ double duration_of(const scene::Scene& scene) {
   return sum;
 }
 
-/// How many cells come in each second through an inlet of this area, m2, or m in two dimensions.
-double arrivals(const scene::Scene& scene, const scene::Feed& feed, double area) {
-  return feed.hematocrit * *scene.domain.openings->front().mean_velocity * area /
-         enclosed_by(scene.cell_types[feed.type]);
+/// How many cells come in each second at most. Between two pressures, where all of the domain were as wide as at its
+/// widest place, and as fast as the fluid is in the middle.
+double arrivals(const scene::Scene& scene, const scene::Feed& feed) {
+  const double area = scene.domain.size.product() / scene.domain.size.x();  // all of the end is open at most
+  double velocity = 0;
+  if (const auto& inlet = scene.domain.openings->front(); inlet.mean_velocity) {
+    velocity = *inlet.mean_velocity;
+  } else {
+    const double height = scene::wall_distance(scene.domain);
+    velocity = std::max(0.0, scene::opening_drive(scene)) * height * height / (8 * scene.fluid.viscosity);
+  }
+  return feed.hematocrit * velocity * area / enclosed_by(scene.cell_types[feed.type]);
 }
 
 }  // namespace
@@ -123,8 +132,7 @@ void pack_cells(scene::Scene& scene, const PackingWatch& watch) {
 void add_fed_cells(scene::Scene& scene) {
   if (scene.domain.feed() == nullptr) return;
   const scene::Feed& feed = *scene.domain.feed();
-  const double area = scene.domain.size.product() / scene.domain.size.x();  // all of the end is open at most
-  const double most = std::ceil(arrivals(scene, feed, area) * duration_of(scene)) + 1;
+  const double most = std::ceil(arrivals(scene, feed) * duration_of(scene)) + 1;
   const scene::SceneFields fields(*scene.document);
   if (!(most <= static_cast<double>(scene::most_cells))) {
     fields.refuse(feed.pointer, "about " + number(most, 3) + " cells would come in during the stages; at most " +

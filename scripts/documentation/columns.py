@@ -11,6 +11,7 @@ def lines(columns):
         means = "; means in summary.json" if column["has_means"] else ""
         space = "in three dimensions: " if column["in_space"] else "in two dimensions: " if column["in_plane"] else ""
         space += "between openings: " if column["at_openings"] else ""
+        space += "where that end has several, and likewise of the others: " if column["of_several_openings"] else ""
         space += "where cells may come or leave: " if column["of_traffic"] else ""
         space += "where forces or gravity act on cells: " if column["of_forces"] else ""
         yield f"| `{column['column']}` | {space}{column['doc']}{means} |"

@@ -62,6 +62,17 @@ FED = changed(CHANNEL, domain={"size": ["60 um", "16 um"], "nodes": [120, 32], "
               cells=[{"type": "rbc", "at": ["30 um", "8 um"], "angle": "1 rad"}],
               interactions=[{"between": ["rbc", other], **REPULSION} for other in ("rbc", "wall")],
               stages__0__duration="0.15 s", output__cells__seconds="5 ms")
+DISC = {"shape": {"circle": {"radius": "1.5 um"}}, "segments": 16, "interior_viscosity": "1.2 cP",
+        "membrane": [{"model": "neo-hookean", "parameters": {"shear_modulus": "6e-3 dyn/cm"}}]}
+FORKED = changed(FED, domain__size=["40 um", "16 um"], domain__nodes=[80, 32],
+                 domain__x=ends({**VELOCITY, "cells": {"type": "disc", "hematocrit": 0.3}}),
+                 domain__obstacles=[{"box": {"lower": ["20 um", "7 um"], "upper": ["40 um", "9 um"]}}],
+                 cell_types={"disc": DISC}, cells=[], stages__0__duration="0.1 s", output__cells__seconds="1 ms",
+                 interactions=[{"between": ["disc", other], **REPULSION} for other in ("disc", "wall")])
+DENSE_HEMATOCRIT, DENSE_SECONDS = 0.4, 0.1
+DENSE = changed(FED, domain__size=["40 um", "16 um"], domain__nodes=[120, 48], cells=[],
+                domain__x=ends({**VELOCITY, "cells": {"type": "rbc", "hematocrit": DENSE_HEMATOCRIT}}),
+                stages__0__duration=f"{DENSE_SECONDS} s", output__cells__seconds="1 ms")
 CAPSULE = {"shape": {"sphere": {"radius": "1 um"}}, "triangles": 320, "interior_viscosity": "1.2 cP",
            "membrane": [{"model": "neo-hookean", "parameters": {"shear_modulus": "1e-4 N/m"}}]}
 FED_TUBE = changed(TUBE, domain={"size": ["14 um", "5.5 um", "5.5 um"], "nodes": [56, 22, 22], "walls": {"tube": {"radius": "2.5 um"}},
@@ -246,6 +257,7 @@ class Openings(unittest.TestCase):
     @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
     def test_the_same_bytes_where_cells_come_and_leave(self):
         self.same_bytes(changed(FED, stages__0__duration="40 ms"), "fed")
+        self.same_bytes(changed(FORKED, stages__0__duration="20 ms"), "forked")
 
     @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
     def test_cells_in_space_come_and_leave(self):
@@ -257,6 +269,88 @@ class Openings(unittest.TestCase):
             return
         self.run_scene(FED_TUBE, "tube-ranks", ranks=2)
         self.assertEqual(differences(self.folder / "tube", self.folder / "tube-ranks"), [])
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_openings_beside_each_other_have_their_own_flows(self):
+        # A wall from end to end: two channels of 3 um and 5 um between the same two pressures.
+        wall = {"box": {"lower": ["0 um", "3 um"], "upper": ["20 um", "5 um"]}}
+        heights = (3e-6, 5e-6)
+        scene = changed(CHANNEL, domain__nodes=[80, 40], domain__x=ends(PRESSURE), domain__obstacles=[wall],
+                        stages__0__duration="2 ms", output__cells__seconds="1 ms")
+        row = self.run_scene(scene, "beside")[-1]
+        gradient = float(PRESSURE["pressure"].split()[0]) / LENGTH
+        for end in ("inlet", "outlet"):
+            for number, height in enumerate(heights, 1):
+                flow = row[f"{end}_{number}_flow_m2_per_s"]
+                self.assertAlmostEqual(flow / (gradient * height ** 3 / (12 * VISCOSITY)), 1, delta=1e-2)
+            parts = sum(row[f"{end}_{number}_flow_m2_per_s"] for number in (1, 2))
+            self.assertAlmostEqual(parts / row[f"{end}_flow_m2_per_s"], 1, delta=1e-12)
+        self.assertNotIn("inlet_3_flow_m2_per_s", row)
+        self.assertNotIn("inlet_1_cells", row)  # none may come
+        rows = {row["quantity"]: row["si"] for row in json.loads(self.rouleau("plan", "scene.json", "--json").stdout)["conversions"]}
+        for name, height in (("inlet 1, around (0 um, 1.5 um)", 3e-6), ("inlet 2, around (0 um, 7.5 um)", 5e-6),
+                             ("outlet 1, around (20 um, 1.5 um)", 3e-6), ("outlet 2, around (20 um, 7.5 um)", 5e-6)):
+            self.assertAlmostEqual(rows[name] / height, 1, delta=1e-9)
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_cells_are_counted_by_the_opening_that_they_leave_through(self):
+        rows = self.run_scene(FORKED, "forked")
+        inlet, outlet = json.loads((self.folder / "forked/summary.json").read_text())["cell_traffic"]["stages"][0]["ends"]
+        self.assertNotIn("openings", inlet)
+        last = rows[-1]
+        self.assertGreater(min(last["outlet_1_cells"], last["outlet_2_cells"]), 3)
+        self.assertEqual(last["outlet_1_cells"] + last["outlet_2_cells"], last["cells_out"])
+        self.assertEqual([opening["cells_out"] for opening in outlet["openings"]],
+                         [last["outlet_1_cells"], last["outlet_2_cells"]])
+        for key in ("cells_out", "volume_out", "flow_in"):
+            self.assertAlmostEqual(sum(opening[key] for opening in outlet["openings"]) / outlet[key], 1, delta=1e-12)
+        went = {}  # where each cell was last seen
+        with open(self.folder / "forked/cells.csv") as table:
+            for cell in csv.DictReader(table):
+                went[int(cell["cell"])] = (float(cell["x_m"]), float(cell["y_m"]))
+        _, left = self.traffic("forked")
+        # The wall between the outlets begins at 20 um: who was last seen behind that left through the branch it was in.
+        seen = [went[cell][1] > 9e-6 for cell in left if went[cell][0] > 22e-6]
+        self.assertGreaterEqual(last["outlet_2_cells"], sum(seen))
+        self.assertGreaterEqual(last["outlet_1_cells"], len(seen) - sum(seen))
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_behind_a_pressure_cells_come_by_the_flow_that_is_measured(self):
+        pressure = f"{12 * VISCOSITY * MEAN * 40e-6 / FED_HEIGHT ** 2!r} Pa"
+        scene = changed(FORKED, domain__x=ends({"pressure": pressure, "cells": {"type": "disc", "hematocrit": 0.3}}),
+                        domain__obstacles=[], stages__0__duration="0.1 s")
+        last = self.run_scene(scene, "by-pressure", "--max-steps", "9000")[-1]
+        last = self.run_scene(scene, "by-pressure", "--resume")[-1]
+        traffic = json.loads((self.folder / "by-pressure/summary.json").read_text())["cell_traffic"]
+        inlet = traffic["stages"][0]["ends"][0]
+        self.assertEqual(traffic["cells_in"], traffic["cells_due"])
+        self.assertGreater(last["cells_in"], 25)
+        self.assertAlmostEqual(inlet["volume_in"], 0.3 * inlet["flow_in"], delta=inlet["volume_in"] / inlet["cells_in"])
+        flows = [row["inlet_flow_m2_per_s"] for row in self.rows("by-pressure")]  # every millisecond
+        self.assertAlmostEqual(inlet["flow_in"] / (1e-3 * (sum(flows) - flows[-1] / 2)), 1, delta=0.02)
+        self.run_scene(scene, "by-pressure-whole", "--threads", "2", **({"ranks": 2} if HAS_RANKS else {}))
+        self.assertEqual(differences(self.folder / "by-pressure", self.folder / "by-pressure-whole"), [])
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_a_dense_feed_keeps_its_hematocrit_and_no_cell_waits(self):
+        self.run_scene(DENSE, "dense")
+        traffic = json.loads((self.folder / "dense/summary.json").read_text())["cell_traffic"]
+        inlet = traffic["stages"][0]["ends"][0]
+        self.assertEqual(traffic["cells_in"], traffic["cells_due"])
+        self.assertGreater(traffic["cells_out"], 20)
+        # The whole number of cells is off by half a one.
+        flow = MEAN * FED_HEIGHT * DENSE_SECONDS
+        self.assertAlmostEqual(inlet["volume_in"] / flow / DENSE_HEMATOCRIT, 1, delta=0.02)
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_stages_can_be_made_longer_when_a_run_with_a_feed_goes_on(self):
+        short, longer = (changed(FORKED, stages__0__duration=time) for time in ("20 ms", "30 ms"))
+        self.run_scene(longer, "at-once")
+        self.run_scene(short, "longer", "--checkpoint")
+        self.run_scene(longer, "longer", "--resume", "--force")
+        for table in ("series.csv", "cells.csv"):
+            rows = [[row for row in (self.folder / name / table).read_text().splitlines()] for name in ("at-once", "longer")]
+            self.assertEqual(*rows)
 
     def test_plan_tells_inlet_and_outlet(self):
         for scene, open_area, speed in ((CHANNEL, HEIGHT, 1.5e-3), (TUBE, math.pi * RADIUS ** 2, 2e-3),
@@ -289,7 +383,6 @@ class Openings(unittest.TestCase):
                 (changed(CHANNEL, domain__x=ends({**VELOCITY, **PRESSURE})), "not at both"),
                 (changed(CHANNEL, domain__x=ends({})), "does not say what it is kept at"),
                 (changed(CHANNEL, domain__x=ends({"mean_velocity": "-1 mm/s"})), "its mean velocity is above 0"),
-                (changed(fed, domain__x=ends({**PRESSURE, "cells": cells})), "cells come in with a mean velocity"),
                 (changed(fed, domain__x=ends({**VELOCITY, "cells": {**cells, "type": "rcb"}})), "did you mean \"rbc\"?"),
                 (changed(fed, domain__x=ends({**VELOCITY, "cells": {**cells, "length": "15 um"}})), "twice as long"),
                 (changed(fed, domain__x=ends({**VELOCITY, "cells": cells}), stages__0={"name": "s", "shear_rate": "1 1/s", "strain": 1}),

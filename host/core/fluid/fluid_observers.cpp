@@ -8,6 +8,7 @@
 
 #include "core/domain/exact_sum.hpp"
 #include "energetics.hpp"
+#include "openings/section.hpp"
 #include "walls.hpp"
 
 namespace rouleau::core {
@@ -115,6 +116,16 @@ void MassAndSpeed<T, Set>::add_up(const Ranks<Set::dimension>& ranks) {
   sum_ = all;
 }
 
+/// The number of a row of the block among the lattice's.
+template <int D>
+std::size_t row_in_lattice(const Domain<D>& domain, const std::array<int, D - 1>& row) {
+  std::size_t number = 0;
+  for (int k = D - 1; k > 0; --k)
+    number = number * static_cast<std::size_t>(domain.size[k]) +
+             static_cast<std::size_t>(domain.block.begin[k] + row[k - 1]);
+  return number;
+}
+
 /// Sums of each row of the lattice.
 template <int D>
 class RowSums {
@@ -122,13 +133,7 @@ class RowSums {
   explicit RowSums(const Domain<D>& domain)
       : domain_(domain), sums_(static_cast<std::size_t>(domain.nodes() / domain.size[0])) {}
   /// Of a row of the block.
-  [[nodiscard]] ExactSum& operator[](const std::array<int, D - 1>& row) {
-    std::size_t of_lattice = 0;
-    for (int k = D - 1; k > 0; --k)
-      of_lattice = of_lattice * static_cast<std::size_t>(domain_.size[k]) +
-                   static_cast<std::size_t>(domain_.block.begin[k] + row[k - 1]);
-    return sums_[of_lattice];
-  }
+  [[nodiscard]] ExactSum& operator[](const std::array<int, D - 1>& row) { return sums_[row_in_lattice(domain_, row)]; }
   /// Of all ranks together: over the nodes of a row.
   [[nodiscard]] std::vector<double> means(const Ranks<D>& ranks) {
     add_up(ranks, sums_);
@@ -143,15 +148,13 @@ class RowSums {
   std::vector<ExactSum> sums_;
 };
 
-}  // namespace
-
-template <class T, class Set>
-void copy_moments(const FluidState<T, Set>& state, int i, Moments<Set::dimension>* to) {
+/// Calls function(x, moments) for the fluid nodes of a row from `begin` to `end`.
+template <class T, class Set, class Function>
+void for_moments(const FluidState<T, Set>& state, int i, int begin, int end, Function function) {
   const auto row = state.lattice.row(i);
-  std::fill_n(to, state.nx(), Moments<Set::dimension>{});
   state.for_spans(i, [&](const MaskSpan& span, const auto& in) {
-    for (int x = span.begin; x < span.end; ++x) {
-      Moments<Set::dimension>& m = to[x];
+    for (int x = std::max(begin, span.begin); x < std::min(end, span.end); ++x) {
+      Moments<Set::dimension> m{};
       Set::for_each_velocity([&](auto q) {
         const double f = static_cast<double>(in[q][x]);
         m.density += f;
@@ -162,8 +165,17 @@ void copy_moments(const FluidState<T, Set>& state, int i, Moments<Set::dimension
       for (int k = 0; k < Set::dimension; ++k)
         m.velocity[k] +=
             0.5 * (own_force ? static_cast<double>(state.force[k].row(row)[x]) : state.setting.body_force[k]);
+      function(x, m);
     }
   });
+}
+
+}  // namespace
+
+template <class T, class Set>
+void copy_moments(const FluidState<T, Set>& state, int i, Moments<Set::dimension>* to) {
+  std::fill_n(to, state.nx(), Moments<Set::dimension>{});
+  for_moments(state, i, 0, state.nx(), [&](int x, const Moments<Set::dimension>& m) { to[x] = m; });
 }
 
 template <class T, class Set>
@@ -231,27 +243,25 @@ std::vector<double> row_velocities_without_membranes(const FluidState<T, Set>& s
 template <class T, class Set>
 std::array<EndFlow, 2> end_flows(const FluidState<T, Set>& state, const Ranks<Set::dimension>& ranks) {
   const Domain<Set::dimension>& domain = state.setting.domain;
-  constexpr std::size_t kinds = 3;  // what is summed of each end: velocities, densities, nodes
-  std::vector<ExactSum> sums(2 * kinds);
-  std::vector<Moments<Set::dimension>> moments(static_cast<std::size_t>(state.nx()));
-  for (int i = 0; i < state.lattice.rows(); ++i) {
-    copy_moments(state, i, moments.data());
-    state.mask.for_fluid(i, [&](int begin, int end) {
-      const auto add = [&](std::size_t which, int x) {
-        if (x < begin || x >= end) return;
-        const Moments<Set::dimension>& node = moments[static_cast<std::size_t>(x)];
-        const double values[kinds] = {node.velocity[0], node.density, 1};
-        for (std::size_t k = 0; k < kinds; ++k) sums[kinds * which + k].add(values[k]);
-      };
-      if (domain.block.begin[0] == 0) add(0, 0);
-      if (domain.block.end[0] == domain.size[0]) add(1, state.nx() - 1);
-    });
-  }
-  add_up(ranks, sums);
+  const auto is_fluid = [&](const auto& node) { return !state.setting.solid || !state.setting.solid->at(node); };
   std::array<EndFlow, 2> flows;
-  for (std::size_t end = 0; end < flows.size(); ++end) {
-    const auto sum = [&](std::size_t kind) { return sums[kinds * end + kind].value(); };
-    flows[end] = {.flow = sum(0), .pressure = sum(1) / sum(2) / 3};
+  for (const int end : {0, 1}) {
+    const std::vector<int> parts =
+        parts_of_section<Set::dimension>(domain, end == 0 ? 0 : domain.size[0] - 1, is_fluid);
+    const auto count = static_cast<std::size_t>(1 + *std::max_element(parts.begin(), parts.end()));
+    std::vector<ExactSum> sums(3 + count);  // velocities, densities, nodes; velocities in each part
+    const int x = end == 0 ? 0 : state.nx() - 1;
+    const bool mine = end == 0 ? domain.wall_below(0) : domain.wall_above(0);
+    for (int i = 0; mine && i < state.lattice.rows(); ++i) {
+      for_moments(state, i, x, x + 1, [&](int, const Moments<Set::dimension>& node) {
+        const double values[] = {node.velocity[0], node.density, 1};
+        for (std::size_t k = 0; k < std::size(values); ++k) sums[k].add(values[k]);
+        sums[3 + static_cast<std::size_t>(parts[row_in_lattice(domain, state.lattice.row(i))])].add(node.velocity[0]);
+      });
+    }
+    add_up(ranks, sums);
+    flows[end] = {.flow = sums[0].value(), .pressure = sums[1].value() / sums[2].value() / 3};
+    for (std::size_t k = 3; k < sums.size(); ++k) flows[end].of_parts.push_back(sums[k].value());
   }
   return flows;
 }

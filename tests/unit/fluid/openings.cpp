@@ -115,7 +115,8 @@ void compare_with_blocks(const FluidSetting<Set::dimension>& setting, const Deco
       }
       const auto flows_too = block->end_flows();
       for (std::size_t end = 0; end < 2; ++end)
-        different[rank] += flows_too[end].flow != flows[end].flow || flows_too[end].pressure != flows[end].pressure;
+        different[rank] += flows_too[end].flow != flows[end].flow || flows_too[end].pressure != flows[end].pressure ||
+                           flows_too[end].of_parts != flows[end].of_parts;
     });
   }
   for (std::thread& thread : threads) thread.join();
@@ -135,6 +136,23 @@ TEST_CASE("the developed flow of a section: exact between planes, uniform withou
   }
   const Section open = section_at<2>({{4, 9}, {false, true}}, nullptr, {}, 0);
   CHECK(open.velocity(3, 0.2) == 0.2);
+}
+
+TEST_CASE("openings beside each other are numbered from the lowest, over periods, too") {
+  const auto stripes = [](int height, bool periodic, const std::string& rows) {
+    return parts_of_section<2>({{4, height}, {false, periodic}}, 0,
+                               [&](const auto& node) { return rows.at(static_cast<std::size_t>(node[1])) == '.'; });
+  };
+  CHECK(stripes(8, false, "..##.#..") == std::vector<int>{0, 0, -1, -1, 1, -1, 2, 2});
+  CHECK(stripes(8, true, "..##.#..") == std::vector<int>{0, 0, -1, -1, 1, -1, 0, 0});
+  // A cross of walls parts a duct into four, numbered along y first; a hole in it joins two of them.
+  for (const bool hole : {false, true}) {
+    const auto parts = parts_of_section<3>({{2, 5, 5}, {false, false, false}}, 1, [&](const std::array<int, 3>& node) {
+      return (hole && node[1] == 2 && node[2] == 4) || (node[1] != 2 && node[2] != 2);
+    });
+    CHECK((parts[0] == 0 && parts[3] == 1 && parts[2] == -1 && parts[12] == -1 && parts[15] == 2));
+    CHECK(parts[24] == (hole ? 2 : 3));
+  }
 }
 
 TEST_CASE("plane Poiseuille flow between openings is of second order, by velocity and by pressure") {

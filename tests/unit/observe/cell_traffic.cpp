@@ -60,13 +60,13 @@ TEST_CASE("the discharge hematocrit of an end is net cell volume over all that f
   traffic.begin_stage("slow", 0);
   CHECK(traffic.summary("m2")["stages"][0]["ends"][0]["discharge_hematocrit"].is_null());
   // The flow grows linearly, so that the trapezoidal rule is exact: 3 in the first 2 s, 9 in the next 2 s.
-  for (const double time : {0.0, 2.0, 4.0}) traffic.flowed({1.5 * time, 1.5 * time}, time);
+  for (const double time : {0.0, 2.0, 4.0}) traffic.flowed({{{1.5 * time}, {0.5 * time, time}}}, time);
   traffic.came(0, 2, 1, 0);
   traffic.came(1, 2, 2, 0);
-  traffic.left(0, 4, 1);
+  traffic.left(0, 4, 1, 1);
   traffic.begin_stage("fast", 4);
-  traffic.flowed({10, 10}, 4);
-  traffic.flowed({10, 10}, 5);
+  traffic.flowed({{{10}, {4, 6}}}, 4);
+  traffic.flowed({{{10}, {4, 6}}}, 5);
   traffic.left(1, 5, 1);
   const nlohmann::json stages = traffic.summary("m2")["stages"];
   REQUIRE(stages.size() == 2);
@@ -75,6 +75,15 @@ TEST_CASE("the discharge hematocrit of an end is net cell volume over all that f
   CHECK(stages[0]["ends"][1]["flow_in"].get<double>() == Approx(-12));
   CHECK(stages[0]["ends"][0]["discharge_hematocrit"].get<double>() == Approx(4.0 / 12));
   CHECK(stages[0]["ends"][1]["discharge_hematocrit"].get<double>() == Approx(2.0 / 12));
+  const nlohmann::json& openings = stages[0]["ends"][1]["openings"];
+  REQUIRE(openings.size() == 2);
+  CHECK(openings[0]["flow_in"].get<double>() == Approx(-4));
+  CHECK(openings[0]["discharge_hematocrit"] == 0);
+  CHECK(openings[1]["flow_in"].get<double>() == Approx(-8));
+  CHECK(openings[1]["discharge_hematocrit"].get<double>() == Approx(2.0 / 8));
+  CHECK((openings[0]["cells_out"] == 0 && openings[1]["cells_out"] == 1));
+  CHECK_FALSE(stages[0]["ends"][0].contains("openings"));
+  CHECK(traffic.come_in() == Approx(22));
   CHECK(stages[1]["ends"][0]["discharge_hematocrit"] == 0);
   CHECK(stages[1]["ends"][1]["discharge_hematocrit"].get<double>() == Approx(0.2));
 }
@@ -84,11 +93,11 @@ TEST_CASE("a traffic that was kept goes on as if it had not been") {
   whole.begin_stage("flow", 0);
   whole.came(0, 1.25, 0, CellTraffic::no_opening);
   whole.came(7, 1.5, 0.25, 0);
-  whole.flowed({3, 2}, 0.5);
+  whole.flowed({{{3}, {2}}}, 0.5);
   CellTraffic restored;
   nlohmann::json::from_cbor(nlohmann::json::to_cbor(whole)).get_to(restored);
   for (CellTraffic* traffic : {&whole, &restored}) {
-    traffic->flowed({4, 4}, 0.75);
+    traffic->flowed({{{4}, {4}}}, 0.75);
     traffic->left(7, 1, 1);
     traffic->begin_stage("on", 1);
     traffic->left(0, 2, 0);
@@ -103,6 +112,13 @@ TEST_CASE("series.csv has columns of cells' traffic where cells may come or leav
   const Table& series = table("series");
   const auto without = series.columns({2, true}), with = series.columns({2, true, true});
   REQUIRE(with.size() == without.size() + 3);
+  RunKind forked(2, true, true);
+  forked.openings = {1, 2};
+  const auto beside = series.columns(forked);
+  CHECK(std::vector(beside.end() - 5, beside.end()) ==
+        std::vector<std::string>{"cells_in", "cells_inside", "cells_out", "outlet_1_cells", "outlet_2_cells"});
+  CHECK(std::count(beside.begin(), beside.end(), "outlet_2_flow_m2_per_s") == 1);
+  CHECK(std::count(beside.begin(), beside.end(), "inlet_1_flow_m2_per_s") == 0);
   CHECK(std::equal(without.begin(), without.end(), with.begin()));
   CHECK(std::vector(with.end() - 3, with.end()) == std::vector<std::string>{"cells_in", "cells_inside", "cells_out"});
   scene::Scene scene;

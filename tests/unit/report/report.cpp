@@ -3,7 +3,6 @@
 
 #include "files/file.hpp"
 #include "hdf5/hdf5_rows.hpp"
-#include "report/page_file.hpp"
 #include "report/report.hpp"
 #include "report/report_data.hpp"
 #include "report/report_outlines.hpp"

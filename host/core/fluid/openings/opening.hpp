@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 namespace rouleau::core {
 
@@ -23,6 +24,7 @@ using Openings = std::optional<std::array<Opening, 2>>;
 struct EndFlow {
   double flow = 0;      ///< along +x: the sum of the nodes' velocities
   double pressure = 0;  ///< mean of the nodes, above that of density 1
+  std::vector<double> of_parts = {};  ///< the flow through each of the end's openings (parts_of_section)
 };
 
 }  // namespace rouleau::core

@@ -1,6 +1,7 @@
 #include "section.hpp"
 
 #include <Eigen/SparseLU>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
@@ -115,5 +116,47 @@ Section section_at(const Domain<D>& domain, const SolidNodes<D>* solid, const Wa
 
 template Section section_at(const Domain<2>&, const SolidNodes<2>*, const WallVelocity&, int);
 template Section section_at(const Domain<3>&, const SolidNodes<3>*, const WallVelocity&, int);
+
+template <int D>
+std::vector<int> parts_of_section(const Domain<D>& domain, int x,
+                                  const std::function<bool(const std::array<int, D>&)>& is_fluid) {
+  constexpr int solid = -1, unknown = -2;
+  const Box<D> section{{}, domain.size};
+  std::vector<int> part;
+  for (int i = 0; i < row_count(section); ++i) {
+    std::array<int, D> node{x};
+    const auto row = row_of(section, i);
+    std::copy(row.begin(), row.end(), node.begin() + 1);
+    part.push_back(is_fluid(node) ? unknown : solid);
+  }
+  int count = 0;
+  for (int first = 0; first < row_count(section); ++first) {
+    if (part[first] != unknown) continue;
+    std::vector<int> reached{first};
+    part[first] = count;
+    while (!reached.empty()) {
+      const auto row = row_of(section, reached.back());
+      reached.pop_back();
+      for (int way = 0; way < 2 * (D - 1); ++way) {
+        auto beside = row;
+        const int k = way / 2;
+        beside[k] = domain.wrapped(k + 1, row[k] + (way % 2 == 0 ? 1 : -1));
+        if (beside[k] < 0) continue;
+        int there = 0;
+        for (int l = D - 2; l >= 0; --l) there = there * domain.size[l + 1] + beside[l];
+        if (part[there] != unknown) continue;
+        part[there] = count;
+        reached.push_back(there);
+      }
+    }
+    ++count;
+  }
+  return part;
+}
+
+template std::vector<int> parts_of_section<2>(const Domain<2>&, int,
+                                              const std::function<bool(const std::array<int, 2>&)>&);
+template std::vector<int> parts_of_section<3>(const Domain<3>&, int,
+                                              const std::function<bool(const std::array<int, 3>&)>&);
 
 }  // namespace rouleau::core

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "core/domain/domain.hpp"
@@ -30,5 +31,13 @@ struct Section {
 /// `solid`: null, or the solid nodes.
 template <int D>
 Section section_at(const Domain<D>& domain, const SolidNodes<D>* solid, const WallVelocity& walls, int x);
+
+/// The openings beside each other in a section at column x: by row of the lattice the number of the connected part of
+/// the fluid that the row's node belongs to, -1 in the solid. Nodes are connected along axes, over periods, too. Parts
+/// are numbered from 0 in the order of their first rows, of which those at the lowest z, and there at the lowest y,
+/// come first.
+template <int D>
+std::vector<int> parts_of_section(const Domain<D>& domain, int x,
+                                  const std::function<bool(const std::array<int, D>& node)>& is_fluid);
 
 }  // namespace rouleau::core
