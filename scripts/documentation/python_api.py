@@ -94,7 +94,8 @@ def section(node, classes, lines):
             head = signature(begin, node.name)
     else:
         head, below = signature(node, node.name), ""
-    call = f"    rouleau.{head}\n\n" if not head.startswith("class ") else ""
+    written = textwrap.wrap(f"rouleau.{head}", 76, subsequent_indent=" " * 8, break_long_words=False, break_on_hyphens=False)
+    call = "".join(f"    {line}\n" for line in written) + "\n" if not head.startswith("class ") else ""
     return f"\n### {node.name}\n\n{call}{paragraphs(text)}\n" + (f"\n{below}\n" if below else "")
 
 
