@@ -1,10 +1,18 @@
 # rouleau_embed_texts(TARGET NAMESPACE HEADER VARIABLE FILE ...) compiles text files into a library of the host, each as the
-# `const std::string_view VARIABLE` of namespace rouleau::NAMESPACE that HEADER declares. The program then needs no file beside
+# `const std::string_view VARIABLE` of namespace rouleau::NAMESPACE that HEADER declares; pictures (.png) byte by byte. The program then needs no file beside
 # it, and what it holds and what is installed cannot differ.
 function(rouleau_embed_texts target namespace header)
   set(definitions "")
   while(ARGN)
     list(POP_FRONT ARGN variable file)
+    if(file MATCHES "\\.png$")
+      set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
+      file(READ "${file}" bytes HEX)
+      file(SIZE "${file}" size)
+      string(REGEX REPLACE "(..)" "\\\\x\\1" bytes "${bytes}")
+      string(APPEND definitions "\nconst std::string_view ${variable}{\"${bytes}\", ${size}};\n")
+      continue()
+    endif()
     rouleau_read_text(text "${file}")
     # Where a shipped scene has its schema is not where a scene made from it has it.
     string(REGEX REPLACE "\n *\"[$]schema\": \"[.][^\n]*" "" text "${text}")

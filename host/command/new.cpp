@@ -42,6 +42,7 @@ name of a scene like demo. TEMPLATE is, in two dimensions,
   suspension     red cells packed at random between walls that shear them
   capsule        one circular capsule in shear flow
   vessel         red cells in a vessel of any shape, which narrows
+  drawing        red cells in a vessel that is drawn: beside the scene a picture, NAME.png, to draw over
 and in three
   red-cell-3d    a red cell in shear flow
   doublet-3d     two red cells that stick together and are sheared

@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 struct SceneTemplate {
   const char* name;
   const std::string_view& text;
+  const std::string_view* picture = nullptr;  ///< that it names NAME.png, NAME being the template's; null: none
 };
 
 const std::array scene_templates{
@@ -36,6 +37,7 @@ const std::array scene_templates{
     SceneTemplate{"doublet-3d", doublet_3d_scene},
     SceneTemplate{"tube-3d", tube_3d_scene},
     SceneTemplate{"vessel", vessel_scene},
+    SceneTemplate{"drawing", drawing_scene, &drawing_picture},
 };
 
 bool is_template(const std::string& name) {
@@ -43,10 +45,10 @@ bool is_template(const std::string& name) {
                      [&](const SceneTemplate& entry) { return name == entry.name; });
 }
 
-std::string_view text_of(const std::string& name) {
+const SceneTemplate& template_called(const std::string& name) {
   std::vector<std::string> names;
   for (const SceneTemplate& entry : scene_templates) {
-    if (name == entry.name) return entry.text;
+    if (name == entry.name) return entry;
     names.emplace_back(entry.name);
   }
   throw Error(Cause::bad_input, "rouleau new scene: there is no template " + in_quotes(name) +
@@ -66,9 +68,12 @@ fs::path file_of(const fs::path& folder, std::string name) {
   return (folder / (name + ".json")).lexically_normal();
 }
 
-}  // namespace
-
-namespace {
+void require_new(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::exists(fs::symlink_status(file, ignored))) return;
+  throw Error(Cause::bad_input, Place{file.string()},
+              "exists already and is left as it is; choose another name, or another place with --dir");
+}
 
 /// "three dimensions, 14 cells, about 3 min on one core": of the time nothing where models are missing.
 std::string about(const fs::path& file) {
@@ -103,17 +108,23 @@ SceneWords scene_words(const std::optional<std::string>& first, const std::strin
 }
 
 void new_scene(const fs::path& folder, const std::string& name, const std::string& template_name) {
-  const std::string_view text = text_of(template_name);
+  const SceneTemplate& made_from = template_called(template_name);
   const fs::path file = file_of(folder, name);
-  std::error_code ignored;
-  if (fs::exists(fs::symlink_status(file, ignored))) {
-    throw Error(Cause::bad_input, Place{file.string()},
-                "exists already and is left as it is; choose another name, or another place with --dir");
+  fs::path picture = file;
+  picture.replace_extension(".png");
+  std::string text(made_from.text);
+  if (made_from.picture != nullptr) {
+    require_new(picture);
+    const std::string shipped = template_name + ".png", made = picture.filename().string();
+    for (std::size_t at = 0; (at = text.find(shipped, at)) != std::string::npos; at += made.size())
+      text.replace(at, shipped.size(), made);
   }
-  files::write_file(file, std::string(text));
+  require_new(file);
+  if (made_from.picture != nullptr) files::write_file(picture, std::string(*made_from.picture));
+  files::write_file(file, text);
   const std::string scene = in_shell(file.string());
-  std::cout << "Made " << file.string() << " from the template " << template_name << ": " << about(file)
-            << ". It runs as it is.\n";
+  std::cout << "Made " << file.string() << (made_from.picture != nullptr ? " and " + picture.string() : "")
+            << " from the template " << template_name << ": " << about(file) << ". It runs as it is.\n";
   if (file.stem().string().ends_with("-3d") && !std::string_view(template_name).ends_with("-3d"))
     std::cout << "Its name ends in -3d, but it has two dimensions: rouleau new --help lists the templates in three.\n";
   std::cout << "Next:\n"

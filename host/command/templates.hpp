@@ -15,6 +15,8 @@ extern const std::string_view interaction_source, interaction_manifest;
 extern const std::string_view plugin_build_file;
 
 extern const std::string_view demo_scene, channel_scene, suspension_scene, suspension_3d_scene, capsule_scene,
-    red_cell_3d_scene, doublet_3d_scene, tube_3d_scene, vessel_scene;
+    red_cell_3d_scene, doublet_3d_scene, tube_3d_scene, vessel_scene, drawing_scene;
+/// Which drawing_scene names drawing.png.
+extern const std::string_view drawing_picture;
 
 }  // namespace rouleau::command

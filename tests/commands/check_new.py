@@ -169,7 +169,7 @@ class Shipped_cells(Case):
 
 class New_scene(Case):
     TEMPLATES = {"demo": "two dimensions, 2 cells", "channel": "two dimensions, 14 cells", "suspension": "two dimensions, 17 cells",
-                 "capsule": "two dimensions, 1 cell,", "vessel": "two dimensions, 13 cells", "suspension-3d": "three dimensions, 14 cells",
+                 "capsule": "two dimensions, 1 cell,", "vessel": "two dimensions, 13 cells", "drawing": "two dimensions, 14 cells", "suspension-3d": "three dimensions, 14 cells",
                  "red-cell-3d": "three dimensions, 1 cell,", "doublet-3d": "three dimensions, 2 cells", "tube-3d": "three dimensions, no cells"}
 
     def test_of_each_template_plans_and_runs_as_it_is(self):
@@ -189,6 +189,17 @@ class New_scene(Case):
                 steps = "2" if template.endswith("-3d") else "20"
                 result = self.call("run", scene, "--out", self.path / template, "--max-steps", steps, "--quiet")
                 self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_of_a_drawing_writes_the_picture_that_it_names_and_overwrites_none(self):
+        self.new("scene", "drawing", "--name", "chip")
+        shipped = (SOURCE / "scenes/templates/drawing.png").read_bytes()
+        self.assertEqual((self.desk / "chip.png").read_bytes(), shipped)
+        self.assertNotIn("drawing.png", (self.desk / "chip.json").read_text())
+        (self.desk / "chip.json").unlink()
+        refused = self.call("new", "scene", "drawing", "--name", "chip")
+        self.assertEqual(refused.returncode, 2, refused.stderr)
+        self.assertIn("chip.png", refused.stderr)
+        self.assertFalse((self.desk / "chip.json").exists())
 
     def test_has_the_name_and_the_template_that_are_meant_whichever_stands_first(self):
         shipped = {name: next(f.read_bytes() for f in (SOURCE / f"scenes/templates/{name}.json", SOURCE / f"scenes/{name}.json") if f.exists())
