@@ -18,7 +18,7 @@ bool equal_cells(const std::vector<int>& first) {
 
 FrameWriter::FrameWriter(std::filesystem::path file, const scene::Scene& scene)
     : file_(std::move(file)), title_(scene.title), domain_(scene.domain), storage_(scene.output.field_storage) {
-  walls_ = wall_border(scene);
+  walls_ = observe::wall_border(scene);
 }
 
 void FrameWriter::write_header(hdf5::File& target) const {
@@ -63,6 +63,7 @@ void FrameWriter::write(const observe::Snapshot& snapshot) {
     observe::give_all(snapshot.membranes.fields);
   }
   if (!snapshot.fields.empty()) write_fields(frame, snapshot.fields, record);
+  record.sheared_walls = write_on_walls(*open_, frame + "/walls", snapshot.fields.on_walls);
   open_->flush();
   frames_.push_back(std::move(record));
 }

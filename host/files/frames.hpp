@@ -2,9 +2,8 @@
 // h5py open.
 //
 //   /                      attributes format, title, size_m [2], nodes [2], periodic_y, between openings periodic_x,
-//                          which is 0; where output.fields has a
-//                          region or a stride: fields_first_m [2], fields_spacing_m [2]; each [3] in three
-//                          dimensions, with periodic_z; between openings periodic_x, 0
+//                          which is 0; where output.fields has a region or a stride: fields_first_m [2],
+//                          fields_spacing_m [2]; each [3] in three dimensions, with periodic_z
 //   /walls                 corners, first, segments; in three dimensions points, triangles: see WallBorder (walls.hpp)
 //   /frames/000000         attributes step, time_s, strain, stage, stage_name
 //     membranes/points     [n, 2] f64, m, not wrapped into the box; [n, 3] in three dimensions
@@ -17,6 +16,8 @@
 //     membranes/connectivity           closed polylines for XDMF; in three dimensions instead
 //     membranes/triangles  [m, 3] i32  nodes, counter-clockwise seen from outside
 //     fields/velocity      [ny, nx, 3] f32 or f64, m/s (third component 0: XDMF's vectors have three)
+//     walls/wall_shear_stress [m, 3] f64, Pa, force of the fluid along the walls' segments, in three dimensions their
+//                          triangles, per area (third component 0 in two dimensions)
 //     fields/density, viscosity, vorticity [ny, nx] f32 or f64
 //                          in three dimensions [nz, ny, nx, 3] (vorticity, too) and [nz, ny, nx]
 //

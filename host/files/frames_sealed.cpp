@@ -58,6 +58,7 @@ void FrameWriter::read_back(const std::filesystem::path& source, std::size_t fra
     if (file.has(frame + "/fields"))
       for (const char* field : field_names)
         if (file.has(frame + "/fields/" + field)) record.fields.emplace_back(field);
+    record.sheared_walls = file.has(frame + "/walls");
     frames_.push_back(std::move(record));
   }
 }

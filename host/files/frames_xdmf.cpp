@@ -24,8 +24,9 @@ std::string data_item(const std::string& dimensions, Item item, const std::strin
          std::to_string(item.precision) + "\" Format=\"HDF\">" + dataset + "</DataItem>";
 }
 
-std::string attribute(const std::string& name, const std::string& kind, const std::string& item) {
-  return "        <Attribute Name=\"" + name + "\" AttributeType=\"" + kind + "\" Center=\"Node\">" + item +
+std::string attribute(const std::string& name, const std::string& kind, const std::string& item,
+                      const std::string& center = "Node") {
+  return "        <Attribute Name=\"" + name + "\" AttributeType=\"" + kind + "\" Center=\"" + center + "\">" + item +
          "</Attribute>\n";
 }
 
@@ -37,6 +38,7 @@ std::string shown_name(const std::string& dataset) {
   if (dataset == "density") return "density deviation";
   if (dataset == "viscosity") return "viscosity (Pa s)";
   if (dataset == "vorticity") return "vorticity (1/s)";
+  if (dataset == observe::shear_stress) return "wall shear stress (Pa)";
   return dataset;
 }
 
@@ -93,17 +95,24 @@ std::string fields(const FrameRecord& frame, const std::string& group, const Fie
   return text + "      </Grid>\n";
 }
 
-/// At all times: segments, or in three dimensions triangles.
-std::string wall_grid(const WallBorder& walls, const std::string& group) {
+/// Segments, or in three dimensions triangles: at all times, or in a frame, with what there is on them.
+std::string wall_grid(const WallBorder& walls, const std::string& group, const FrameRecord* frame = nullptr,
+                      const std::string& on_walls = {}) {
   const auto grid = [&](const std::string& topology, std::size_t facets, const std::string& facets_name,
                         const std::string& geometry, std::size_t points, const std::string& points_name) {
     if (facets == 0) return std::string();
     const std::string columns = ' ' + std::to_string(geometry.size()), count = std::to_string(facets);
-    return "    <Grid Name=\"walls\" GridType=\"Uniform\">\n        <Topology TopologyType=" + topology +
-           " NumberOfElements=\"" + count + "\">" + data_item(count + columns, {"Int", 4}, group + facets_name) +
+    std::string begin = "    <Grid Name=\"walls\" GridType=\"Uniform\">\n", values;
+    if (frame != nullptr) {
+      begin = begin_grid("walls", frame->time);
+      values = attribute(shown_name(observe::shear_stress), "Vector",
+                         data_item(count + " 3", {"Float", 8}, on_walls + observe::shear_stress), "Cell");
+    }
+    return begin + "        <Topology TopologyType=" + topology + " NumberOfElements=\"" + count + "\">" +
+           data_item(count + columns, {"Int", 4}, group + facets_name) +
            "</Topology>\n        <Geometry GeometryType=\"" + geometry + "\">" +
-           data_item(std::to_string(points) + columns, {"Float", 8}, group + points_name) +
-           "</Geometry>\n    </Grid>\n";
+           data_item(std::to_string(points) + columns, {"Float", 8}, group + points_name) + "</Geometry>\n" + values +
+           "    </Grid>\n";
   };
   std::string surface =
       grid("\"Triangle\"", walls.triangles.size(), "/triangles", "XYZ", walls.points.size(), "/points");
@@ -116,11 +125,12 @@ std::string wall_grid(const WallBorder& walls, const std::string& group) {
 
 std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const FieldGrid& grid,
                       const WallBorder& walls) {
-  std::ostringstream membrane_grids, field_grids;
+  std::ostringstream membrane_grids, field_grids, wall_grids;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::string path = h5 + ":" + frame_path(i);
     if (frames[i].cells > 0) membrane_grids << membranes(frames[i], path + "/membranes");
     if (!frames[i].fields.empty()) field_grids << fields(frames[i], path + "/fields", grid);
+    if (frames[i].sheared_walls) wall_grids << wall_grid(walls, h5 + ":/walls", &frames[i], path + "/walls/");
   }
   std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n";
   const auto collection = [&](const char* name, const std::string& grids) {
@@ -130,6 +140,7 @@ std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string&
   };
   collection("membranes", membrane_grids.str());
   collection("fields", field_grids.str());
+  collection("wall shear stress", wall_grids.str());
   text += wall_grid(walls, h5 + ":/walls");
   return text + "  </Domain>\n</Xdmf>\n";
 }

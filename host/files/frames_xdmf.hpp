@@ -23,6 +23,7 @@ struct Topology {
 struct FrameRecord : Topology {
   double time = 0;                  ///< s
   std::vector<std::string> fields;  ///< datasets under fields/
+  bool sheared_walls = false;       ///< it has walls/wall_shear_stress
 };
 
 /// Where the nodes lie that the fields are given at, and how their numbers are stored.
@@ -32,7 +33,8 @@ struct FieldGrid {
   int bytes = 4;  ///< of a number
 };
 
-/// XDMF text: temporal collections for membranes and fields, for frames 0, 1, ... of `h5`, and the walls.
+/// XDMF text: temporal collections for membranes, fields and what there is on walls, for frames 0, 1, ... of `h5`,
+/// and the walls.
 std::string xdmf_text(const std::vector<FrameRecord>& frames, const std::string& h5, const FieldGrid& grid,
                       const WallBorder& walls);
 

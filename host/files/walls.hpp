@@ -1,36 +1,18 @@
 // Walls that are no planes, as pictures show them: what frames.h5 has of them.
 #pragma once
 
-#include <array>
-#include <vector>
-
 #include "hdf5/hdf5_file.hpp"
-#include "scene/scene.hpp"
+#include "observe/snapshot.hpp"
+#include "observe/walls/wall_border.hpp"
 
 namespace rouleau::files {
 
-/// In m, in the domain's coordinates, and within the domain.
-struct WallBorder {
-  /// Polygon i around walls, which lie at its left: corners first[i] to first[i + 1] of x and y; in three dimensions
-  /// around what the plane across z through the domain's middle cuts of them. They end at the domain's ends.
-  std::vector<std::array<double, 2>> corners;
-  std::vector<int> first{0};
-  /// Sides of these polygons, as numbers of their corners, that fluid meets: not those at the domain's ends.
-  std::vector<std::array<int, 2>> segments;
-  /// In three dimensions the walls' surface, its triangles counter-clockwise seen from the wall. It is open where the
-  /// domain ends.
-  std::vector<std::array<double, 3>> points;
-  std::vector<std::array<int, 3>> triangles;
-
-  [[nodiscard]] bool empty() const { return corners.empty() && triangles.empty(); }
-};
-
-/// Of a scene: straight between samples of the distance to its walls, of polygons a quarter of a spacing apart, of
-/// surfaces one; farther where the lattice is large. Empty where planes alone close the domain.
-WallBorder wall_border(const scene::Scene& scene);
+using observe::WallBorder;
 
 /// Adds them to a file as group /walls, unless they are empty. Throws Error(input_output).
 void write_walls(hdf5::File& file, const WallBorder& walls);
+/// Fields that are given on their facets, as datasets of a group, which is made if there are any: whether there are.
+bool write_on_walls(hdf5::File& file, const std::string& group, const std::vector<observe::Field>& fields);
 /// Empty where the file has none. Throws Error(input_output), also where numbers do not fit each other.
 WallBorder read_walls(const hdf5::File& file);
 

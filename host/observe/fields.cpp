@@ -89,8 +89,8 @@ template <int D>
 class Vorticity {
  public:
   using Row = std::array<int, D - 1>;
-  Vorticity(const StoredRows<D>& rows, const core::SolidNodes<D>* solid, const core::WallVelocity& walls)
-      : rows_(rows), solid_(solid), walls_(walls) {}
+  Vorticity(const StoredRows<D>& rows, const core::FluidSetting<D>& fluid, const core::WallVelocity& walls)
+      : rows_(rows), solid_(fluid.solid.get()), wall_time_(fluid.wall_time), walls_(walls) {}
 
   /// Of the nodes of a row, which is known as well as those beside it.
   void begin(const Row& row, const KnownRows<core::Moments<D>>& known) {
@@ -128,7 +128,7 @@ class Vorticity {
     const double upper_or_lower = step > 0 ? walls_.upper : walls_.lower;
     if (column < 0) return 2 * own - own_[x - step].velocity[component];  // beyond an opening it goes on
     if (row == nullptr) return 2 * (axis == 1 && component == 0 ? upper_or_lower : 0) - own;
-    if (solid(x, axis, step)) return -own;
+    if (solid(x, axis, step)) return 2 * of_wall(x, component, axis, step) - own;
     return row[column].velocity[component];
   }
   /// Whether the node that is so many steps along an axis from one of the row is solid.
@@ -140,8 +140,18 @@ class Vorticity {
     return solid_->at(rows_.domain(), node);
   }
 
+  /// Of the wall on the way there.
+  [[nodiscard]] double of_wall(int x, std::size_t component, int axis, int step) const {
+    if (wall_time_ == 0) return 0;
+    std::array<int, D> node{x}, to{};
+    std::copy(row_.begin(), row_.end(), node.begin() + 1);
+    to[static_cast<std::size_t>(axis)] = step;
+    return wall_time_ * solid_->velocity(node, to)[static_cast<Eigen::Index>(component)];
+  }
+
   StoredRows<D> rows_;
   const core::SolidNodes<D>* solid_;
+  double wall_time_;
   core::WallVelocity walls_;
   Row row_{};
   const core::Moments<D>* own_ = nullptr;
@@ -209,7 +219,7 @@ FieldSnapshot fields_of(const core::AnyFluid<D>& fluid, const scene::Scene& scen
     for (int column = 0; column < columns; ++column)
       *to++ = core::viscosity_of(1 / nodes[rows.node(column)]) * viscosity_unit;
   });
-  Vorticity<D> curl(rows, fluid.setting().solid.get(), fluid.walls_now());
+  Vorticity<D> curl(rows, fluid.setting(), fluid.walls_now());
   add(Moments{}, "vorticity", "1/s", Vorticity<D>::components, true, moments,
       [=](const Row& row, const KnownRows<Moments>& known, double* to) mutable {
         curl.begin(row, known);

@@ -98,6 +98,7 @@ struct FieldSnapshot {
   int nx = 0, ny = 0;
   int nz = 1;  ///< 1 in two dimensions
   std::vector<Field> fields;
+  std::vector<Field> on_walls;  ///< of the facets of WallBorder: wall_shear_stress, if it is wanted
   [[nodiscard]] bool empty() const { return nx == 0; }
 };
 

@@ -181,6 +181,7 @@ inline constexpr double tube_error = 1;        ///< of the flow rate, over the s
 // ---- costs: seconds on one core, bytes ----
 namespace cost {
 inline constexpr double of_node[2][2] = {{0.85e-9, 1.5e-9}, {5.5e-9, 11e-9}};  ///< by dimension, f32 and f64 [time]
+inline constexpr double of_wall_node[2] = {36e-9, 0};  ///< s more, within a spacing of walls of a shape [time]
 /// s, of a membrane's node, and what is on top [time].
 struct OfMembraneNode {
   double alone;

@@ -62,7 +62,8 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<scen
   double nodes = 1;
   for (int axis = 0; axis < scene.domain.dimension(); ++axis) nodes *= storage.count(axis, scene.domain.nodes[axis]);
   double components = 0;
-  for (const std::string& quantity : scene.output.quantities) components += quantity == "velocity" ? 3 : 1;
+  for (const std::string& quantity : scene.output.quantities)
+    components += quantity == "velocity" ? 3 : quantity == "wall_shear_stress" ? 0 : 1;
 
   constexpr double per_node = 16 + 8 + 4;  // place, tension, aggregate
   estimate.fields_bytes =
@@ -223,7 +224,9 @@ Estimate estimate(const Plan& plan) {
   for (const scene::StageSetting& stage : plan.stages) estimate.steps += static_cast<double>(stage.max_steps);
   estimate.wall_s =
       estimate.steps *
-      (step_cost(nodes, membrane, scene.numerics.precision, dimension, membrane_scheme(plan)) + cost_of_rows(scene));
+      (step_cost(nodes, membrane, scene.numerics.precision, dimension, membrane_scheme(plan)) +
+       (scene.domain.passages ? scene.domain.passages->beside_walls : 0) * cost::of_wall_node[dimension - 2] +
+       cost_of_rows(scene));
   estimate.memory_bytes = nodes * word *
                               (velocities + (plan.has_cells ? dimension : 0) +
                                (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +

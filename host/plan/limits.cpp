@@ -48,7 +48,8 @@ void add_relaxation_times(const Plan& plan, LimitList& limits) {
 void add_mach_numbers(const LimitedStage& of, LimitList& limits) {
   const scene::StageSetting& stage = of.stage;
   if (stage.fastest_wall() != 0) {
-    const std::string what = stage.stage->mean_wall_speed != 0 ? "the walls' speeds" : "shear_rate";
+    const std::string what =
+        stage.stage->mean_wall_speed != 0 || stage.shape_speed > 0 ? "the walls' speeds" : "shear_rate";
     limits.below("Mach number of the walls" + of.where, units::mach_number(stage.fastest_wall()),
                  scene::largest_wall_mach(of.scene.fluid.inertia),
                  of.lower + " or " + what + ", or raise the resolution", of.density);

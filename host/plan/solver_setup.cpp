@@ -155,6 +155,7 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index, const L
       .openings = stage.openings,
       .region = walls.region,
       .solid = walls.solid,
+      .wall_time = scene.domain.shape_speed > 0 ? stage.units.time : 0,
       .wall_area = walls.area,
       .tau = stage.tau,
       .layers = scene::lattice_layers(scene),

@@ -305,6 +305,7 @@ class Simulation final : StepHooks {
     } else {
       observe::give_all(snapshot.membranes.fields);
       observe::give_all(snapshot.fields.fields);
+      observe::give_all(snapshot.fields.on_walls);
     }
     return true;
   }

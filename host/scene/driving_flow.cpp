@@ -96,7 +96,8 @@ double mean_rate(double shear_rate, const Vector& force, const Scene& scene) {
   if (shear_rate != 0) return std::abs(shear_rate);
   if (!has_walls(scene.domain)) return 0;
   const double height = wall_distance(scene.domain), round = scene.domain.tube_radius ? 2 : 1;
-  return driving_part(force, scene.domain) * height / (4 * round * channel_viscosity(scene));
+  return driving_part(force, scene.domain) * height / (4 * round * channel_viscosity(scene)) +
+         scene.domain.shape_speed / height;
 }
 
 double steady_rate(const Stage& stage, const Scene& scene) {

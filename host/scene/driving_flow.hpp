@@ -46,10 +46,10 @@ struct ViscosityRange {
 };
 ViscosityRange viscosity_range(const FluidProperties& fluid);
 
-/// Shear rate that a stage's numbers are made with, 1/s: that of the walls where they shear; else that of the developed
-/// flow between them, |du/dy| averaged over the height, G H / (4 mu), which is its largest velocity over half the
-/// height (in a tube, G R / (4 mu), over the radius). The largest of an oscillation. 0 at rest, and where no wall holds
-/// a flow that is driven.
+/// Shear rate that a stage's numbers are made with, 1/s: that of the walls where they shear; else that of the
+/// developed flow between them, |du/dy| averaged over the height, G H / (4 mu), which is its largest velocity over
+/// half the height (in a tube, G R / (4 mu), over the radius), and the speed of walls of a shape over the distance of
+/// walls. The largest of an oscillation. 0 at rest, and where no wall holds a flow that is driven.
 double mean_shear_rate(const Stage& stage, const Scene& scene);
 
 /// Strain that a flow from a start at rest is late by, for good, for each unit of density_factor; 0 where it starts

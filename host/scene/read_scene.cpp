@@ -378,7 +378,7 @@ Scene read_scene(std::shared_ptr<const json::Document> document, Faults& faults)
   part([&] { check_layers(fields, scene); });
   part([&] { scene.interactions = read_interactions(fields, scene.cell_types, scene.domain); });
   part([&] { scene.stages = read_stages(fields, scene); });
-  part([&] { scene.output = read_output(fields, scene.stages); });
+  part([&] { scene.output = read_output(fields, scene.stages, scene.domain); });
   part([&] { scene.output.field_storage = read_field_storage(fields, scene.domain); });
   part([&] { check_duct(fields, scene); });
   part([&] { check_openings(fields, scene); });

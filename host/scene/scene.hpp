@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <variant>
 #include <vector>
@@ -44,6 +45,7 @@ struct Passages {
   bool through_x = true;            ///< whether a way leads through a period along x, or from inlet to outlet
   std::array<double, 2> open = {};  ///< m2, or m in two dimensions, at the lower end along x and the upper one
   double least_open = 0;            ///< the same at the place along x where it is least
+  double beside_walls = 0;          ///< nodes of the fluid within a spacing of walls of a shape
 };
 
 /// Cells that come in through an opening while the run goes on.
@@ -80,6 +82,7 @@ struct Domain {
   core::RegionPointer<2> region_in_plane = {};
   core::RegionPointer<3> region_in_space = {};
   double region_content = 0;
+  double shape_speed = 0;                         ///< the largest of a wall that is no plane, m/s
   std::shared_ptr<const Passages> passages = {};  ///< made by shape::survey_walls(); null: not looked for
   double region_width = 0;                        ///< twice the largest distance of a place in it to a wall, m
 
@@ -306,10 +309,14 @@ struct FieldStorage {
 struct Output {
   Cadence cells;                        ///< rows of cells.csv, aggregates.csv and membranes in frames.h5
   Cadence fields;                       ///< fluid fields in frames.h5
-  std::vector<std::string> quantities;  ///< of "velocity", "density", "viscosity", "vorticity"
+  std::vector<std::string> quantities;  ///< of "velocity", "density", "viscosity", "vorticity", "wall_shear_stress"
   FieldStorage field_storage;
   std::optional<double> checkpoint_seconds = 600;  ///< of wall-clock time between checkpoints; absent: none are written
   double aggregate_gap = 0.75e-6;                  ///< m; two cells are aggregated while their smallest gap is below
+
+  [[nodiscard]] bool wants(std::string_view quantity) const {
+    return std::find(quantities.begin(), quantities.end(), quantity) != quantities.end();
+  }
 };
 
 /// "at rest": no node moved more than `displacement` within the last `window`.

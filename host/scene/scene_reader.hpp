@@ -182,7 +182,7 @@ std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vect
 /// What the entry asks for; with a hematocrit it has no count yet.
 RandomPacking read_packing(const SceneFields& fields, const std::string& entry, int type, const Domain& domain);
 std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene);
-Output read_output(const SceneFields& fields, const std::vector<Stage>& stages);
+Output read_output(const SceneFields& fields, const std::vector<Stage>& stages, const Domain& domain);
 FieldStorage read_field_storage(const SceneFields& fields, const Domain& domain);
 /// Refuses cells with more membrane nodes than can be computed.
 void check_membrane_nodes(const Scene& scene);

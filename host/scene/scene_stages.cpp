@@ -58,8 +58,8 @@ void check_until(const SceneFields& fields, const Stage& stage, const Scene& sce
 /// Faults that the schema cannot see because they lie between the keys of a stage.
 void check_stage(const SceneFields& fields, const Stage& stage, const Scene& scene) {
   const auto& pointer = stage.pointer;
-  const bool flows = scene.domain.is_open() || walls_move(stage) || stage.pressure_gradient.x() != 0.0 ||
-                     stage.mean_velocity || stage.changes();
+  const bool flows = scene.domain.is_open() || scene.domain.shape_speed > 0 || walls_move(stage) ||
+                     stage.pressure_gradient.x() != 0.0 || stage.mean_velocity || stage.changes();
   if (fields.has(pointer + "/walls") && fields.has(pointer + "/shear_rate")) {
     fields.refuse_key(pointer + "/walls", "walls and shear_rate both say how the walls move; leave one of them out");
   }
@@ -349,11 +349,18 @@ std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene) {
   return stages;
 }
 
-Output read_output(const SceneFields& fields, const std::vector<Stage>& stages) {
+Output read_output(const SceneFields& fields, const std::vector<Stage>& stages, const Domain& domain) {
   Output output;
   fields.attempt([&] { output.cells = read_cadence(fields, "/output/cells", stages); });
   fields.attempt([&] { output.fields = read_cadence(fields, "/output/fields", stages); });
   output.quantities = fields.value_or("/output/fields/quantities", std::vector<std::string>{});
+  if (output.wants("wall_shear_stress") && !domain.has_shapes() && !domain.tube_radius)
+    fields.attempt([&] {
+      fields.refuse(
+          "/output/fields/quantities",
+          "\"wall_shear_stress\" is that on walls of a shape, and the domain has none\nleave it out: of plane "
+          "walls series.csv has the stress; or give domain.walls or domain.obstacles");
+    });
   if (fields.has("/output/checkpoint/seconds")) {
     output.checkpoint_seconds = fields.quantity("/output/checkpoint/seconds", "s", range::time);
   } else if (fields.has("/output/checkpoint")) {

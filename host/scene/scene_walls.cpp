@@ -68,6 +68,8 @@ class ShapeReader {
     }
     return shape;
   }
+  /// Of a wall that has been read, m/s.
+  [[nodiscard]] double fastest() const { return fastest_; }
 
  private:
   /// Of a length that may be left out.
@@ -82,27 +84,54 @@ class ShapeReader {
   }
 
   [[nodiscard]] WallShape::Box box(const std::string& pointer) const {
-    const WallShape::Box box{fields_.place(pointer + "/lower", domain_, "corner"),
-                             fields_.place(pointer + "/upper", domain_, "corner")};
+    WallShape::Box box{fields_.place(pointer + "/lower", domain_, "corner"),
+                       fields_.place(pointer + "/upper", domain_, "corner")};
+    if (fields_.has(pointer + "/velocity"))
+      box.velocity = space(fields_.quantities(pointer + "/velocity", "m/s", range::velocity, domain_.dimension()));
+    note_speed(box.velocity.norm());
     for (int axis = 0; axis < domain_.dimension(); ++axis)
       require_rise(json::child_pointer(pointer + "/upper", axis), box.lower[axis], box.upper[axis], "lower to upper");
     return box;
   }
 
   [[nodiscard]] WallShape::Sphere sphere(const std::string& pointer) const {
-    return {fields_.place(pointer + "/center", domain_), fields_.quantity(pointer + "/radius", "m", any_length)};
+    WallShape::Sphere sphere{fields_.place(pointer + "/center", domain_),
+                             fields_.quantity(pointer + "/radius", "m", any_length)};
+    const std::string turns = pointer + "/angular_velocity";
+    if (fields_.has(turns) && fields_.at(turns).is_array() == domain_.in_plane())
+      fields_.refuse(turns, domain_.in_plane() ? "a disc turns in the plane\ngive one number, such as \"10 1/s\", "
+                                                 "positive counter-clockwise"
+                                               : "a ball turns about an axis\ngive three numbers, such as [0, 0, "
+                                                 "\"10 1/s\"]");
+    if (fields_.has(turns) && domain_.in_plane())
+      sphere.angular_velocity.z() = fields_.quantity(turns, "1/s", range::shear_rate);
+    if (fields_.has(turns) && !domain_.in_plane())
+      sphere.angular_velocity = space(fields_.quantities(turns, "1/s", range::shear_rate, 3));
+    note_speed(sphere.radius * sphere.angular_velocity.norm());
+    return sphere;
   }
+
+  static Eigen::Vector3d space(const Vector& vector) {
+    Eigen::Vector3d made = Eigen::Vector3d::Zero();
+    for (int axis = 0; axis < vector.dimension(); ++axis) made[axis] = vector[axis];
+    return made;
+  }
+  void note_speed(double speed) const { fastest_ = std::max(fastest_, speed); }
 
   [[nodiscard]] WallShape::Cylinder cylinder(const std::string& pointer) const {
     if (domain_.in_plane())
       fields_.refuse_key(pointer, "a cylinder has three dimensions, and the domain two\ntake \"sphere\", here a disc");
     const auto axis = static_cast<int>(fields_.value<std::string>(pointer + "/axis")[0] - axis_names[0]);
     const Vector center = fields_.quantities(pointer + "/center", "m", range::place, 2);
-    const WallShape::Cylinder cylinder{axis,
-                                       {center[0], center[1]},
-                                       fields_.quantity(pointer + "/radius", "m", any_length),
-                                       end(pointer + "/from", -endless),
-                                       end(pointer + "/to", endless)};
+    const WallShape::Cylinder cylinder{
+        axis,
+        {center[0], center[1]},
+        fields_.quantity(pointer + "/radius", "m", any_length),
+        end(pointer + "/from", -endless),
+        end(pointer + "/to", endless),
+        fields_.quantity_or(pointer + "/velocity", "m/s", range::velocity, 0.0),
+        fields_.quantity_or(pointer + "/angular_velocity", "1/s", range::shear_rate, 0.0)};
+    note_speed(std::hypot(cylinder.velocity, cylinder.radius * cylinder.angular_velocity));
     require_rise(pointer + "/to", cylinder.from, cylinder.to, "\"from\" to \"to\"");
     return cylinder;
   }
@@ -225,6 +254,7 @@ class ShapeReader {
 
   const SceneFields& fields_;
   const Domain& domain_;
+  mutable double fastest_ = 0;
 };
 
 Feed read_feed(const SceneFields& fields, const std::string& pointer, const std::vector<CellType>& types) {
@@ -292,6 +322,12 @@ void check_openings(const SceneFields& fields, const Scene& scene) {
                   "between two pressures a fluid without walls has nothing that could hold it\n"
                   "close y, or give the inlet a mean_velocity");
   });
+  fields.attempt([&] {
+    if (scene.domain.shape_speed > 0)
+      fields.refuse("/domain/x",
+                    "the flow through openings knows of no walls of a shape that move\nlet x be periodic, "
+                    "or leave velocity and angular_velocity out of the shapes");
+  });
   for (const Stage& stage : scene.stages) {
     const std::string drives =
         "between openings their pressures or velocity drive the flow, in all stages\nleave this "
@@ -327,6 +363,7 @@ void read_wall_shapes(const SceneFields& fields, Domain& domain) {
   for (std::size_t i = 0; i < count; ++i)
     fields.attempt(
         [&] { domain.obstacles.push_back(reader.read(json::child_pointer("/domain/obstacles", i), false)); });
+  domain.shape_speed = reader.fastest();
   if (!domain.has_shapes() || domain.node_count() <= static_cast<double>(most_nodes_of_block)) return;
   fields.attempt([&] {  // every rank has a mark for each node
     fields.refuse("/domain/nodes", number(domain.node_count(), 12) +

@@ -70,6 +70,7 @@ StageSetting make_stage_setting(const Scene& scene, int index) {
   const double mean = setting.units.to_lattice(stage.mean_wall_speed, units::dimension::velocity);
   const double apart = setting.shear_rate * scene.domain.nodes[1] / 2;
   setting.walls = {-(apart - mean), apart + mean};
+  setting.shape_speed = setting.units.to_lattice(scene.domain.shape_speed, units::dimension::velocity);
   setting.body_force = driving_force(stage, scene);
   for (double& along : setting.body_force) along = setting.units.to_lattice(along, units::dimension::force_density);
   if (scene.domain.openings) {

@@ -20,6 +20,7 @@ struct StageSetting {
   double tau;
   double shear_rate;              ///< lattice
   core::WallVelocity walls;       ///< lattice
+  double shape_speed;             ///< lattice, the largest of walls that are no planes
   Vector body_force;              ///< lattice, body force and pressure gradient; of openings what they amount to
   core::Openings openings;        ///< lattice, mean velocity over the inlet's true area, pressures above the outlet's
   core::Oscillation oscillation;  ///< lattice, of walls and body force
@@ -31,8 +32,8 @@ struct StageSetting {
   [[nodiscard]] bool is_driven() const { return openings || fastest_wall() != 0 || largest_body_force() != Vector(); }
   /// Largest speed of a wall and largest force that there may be, oscillation included; lattice.
   [[nodiscard]] double fastest_wall() const {
-    return std::max(std::abs(walls.lower) + std::abs(oscillation.walls.lower),
-                    std::abs(walls.upper) + std::abs(oscillation.walls.upper));
+    return std::max({std::abs(walls.lower) + std::abs(oscillation.walls.lower),
+                     std::abs(walls.upper) + std::abs(oscillation.walls.upper), shape_speed});
   }
   [[nodiscard]] Vector largest_body_force() const {
     Vector force = body_force;

@@ -13,20 +13,30 @@
 
 namespace rouleau::scene {
 
+/// Shapes with borders that may move along themselves: m, m/s, 1/s.
+struct WallBox {
+  Vector lower, upper;
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+};
+/// In two dimensions a disc.
+struct WallSphere {
+  Vector center;
+  double radius;
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
+};
+/// Of three dimensions.
+struct WallCylinder {
+  int axis;
+  std::array<double, 2> center;  ///< along the other two axes, in their order
+  double radius, from, to;
+  double velocity = 0, angular_velocity = 0;  ///< along its axis, and about it
+};
+
 /// A part of the domain, in its coordinates, m. What reaches along an axis without an end has an infinite number there.
 struct WallShape {
-  struct Box {
-    Vector lower, upper;
-  };
-  struct Sphere {
-    Vector center;
-    double radius;
-  };  ///< in two dimensions a disc
-  struct Cylinder {
-    int axis;
-    std::array<double, 2> center;  ///< along the other two axes, in their order
-    double radius, from, to;
-  };  ///< of three dimensions
+  using Box = WallBox;
+  using Sphere = WallSphere;
+  using Cylinder = WallCylinder;
   struct Outline {
     std::vector<std::array<double, 2>> points;
     double lower, upper;

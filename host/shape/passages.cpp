@@ -75,7 +75,9 @@ class Survey {
 
  public:
   Survey(core::RegionPointer<D> region, const core::Domain<D>& domain)
-      : domain_(domain), region_(core::intersection<D>({std::move(region), core::between_walls(domain)})) {
+      : domain_(domain),
+        shapes_(std::move(region)),
+        region_(core::intersection<D>({shapes_, core::between_walls(domain)})) {
     long below = 1;
     for (int k = 0; k < D; ++k) stride_[k] = std::exchange(below, below * domain.size[k]);
     int count = 1;
@@ -110,6 +112,7 @@ class Survey {
   Pools pools;
   std::vector<long> first_of_run;  ///< nodes
   std::vector<double> open_nodes;  ///< at each place along x
+  double beside_walls = 0;         ///< nodes within a spacing of the region's border
 
  private:
   struct Place {
@@ -135,6 +138,7 @@ class Survey {
       for (int k = 0; k < D; ++k) place[k] = node[k];
       const core::Distance<D> found = region_->distance(place);
       layer_[i] = {found.value, found.gradient};
+      if (found.value > 0 && found.value < 1 && shapes_->distance(place).value < 1) ++beside_walls;
     }
     for (long row = 0; row < static_cast<long>(rows_.size()); ++row) add_row(row, level);
     for (int k = 1; k + 1 < D; ++k) join_along(k);
@@ -238,7 +242,7 @@ class Survey {
   }
 
   core::Domain<D> domain_;
-  core::RegionPointer<D> region_;
+  core::RegionPointer<D> shapes_, region_;
   std::vector<Node> ways_;  ///< to half of the nodes around one, those that follow it
   std::array<long, D> stride_{};
   std::vector<Place> layer_, last_layer_, first_layer_;
@@ -287,6 +291,7 @@ scene::Passages surveyed(const scene::Scene& scene) {
     found.apart_at = place_of(survey.first_of_run[run]);
     break;
   }
+  found.beside_walls = survey.beside_walls;
   const double of_node = std::pow(spacing, D - 1);
   found.open = {survey.open_nodes.front() * of_node, survey.open_nodes.back() * of_node};
   found.least_open = *std::ranges::min_element(survey.open_nodes) * of_node;

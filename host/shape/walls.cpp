@@ -12,6 +12,7 @@
 #include "core/geometry/formulas.hpp"
 #include "core/geometry/parts.hpp"
 #include "core/geometry/region.hpp"
+#include "json/json_pointer.hpp"
 #include "scene/scene_reader.hpp"
 #include "wall_borders.hpp"
 
@@ -96,6 +97,21 @@ class Builder {
     if (to >= size - 0.5 - exact * size) to = endless;
   }
 
+  /// Gradient of the velocity of what turns.
+  static Eigen::Matrix<double, D, D> spin(const Eigen::Vector3d& w) {
+    Eigen::Matrix3d cross;
+    cross << 0, -w.z(), w.y(), w.z(), 0, -w.x(), -w.y(), w.x(), 0;
+    return cross.topLeftCorner<D, D>();
+  }
+
+  /// Of a wall that slides along an axis.
+  void require_endless(const std::string& pointer, int axis, double from, double to) const {
+    if (!std::isfinite(from) && !std::isfinite(to)) return;
+    fields_.refuse(pointer, std::string("this wall ends along ") + scene::axis_names[axis] +
+                                ", and would move through the fluid\nwalls move along themselves: let it reach from "
+                                "one end of the domain to the other along an axis that is periodic, or let this be 0");
+  }
+
   /// With images along the periodic axes that it does not pass; refused where it reaches farther than a period beyond.
   RegionPointer<D> imaged(const std::string& pointer, RegionPointer<D> region, const Vec<D>& from,
                           const Vec<D>& to) const {
@@ -111,27 +127,40 @@ class Builder {
 
   RegionPointer<D> region(const std::string& pointer, const WallShape::Box& box) const {
     Vec<D> from = at<D>(box.lower), to = at<D>(box.upper);
-    for (int k = 0; k < D; ++k) take_ends(k, from[k], to[k]);
-    return imaged(pointer, core::box_region<D>(from, to), from, to);
+    core::BorderMotion<D> motion{.velocity = box.velocity.head<D>() / unit_};
+    for (int k = 0; k < D; ++k) {
+      take_ends(k, from[k], to[k]);
+      if (motion.velocity[k] != 0)
+        require_endless(json::child_pointer(pointer + "/box/velocity", k), k, from[k], to[k]);
+    }
+    return imaged(pointer, core::moving<D>(core::box_region<D>(from, to), motion), from, to);
   }
 
   RegionPointer<D> region(const std::string& pointer, const WallShape::Sphere& sphere) const {
     const Vec<D> center = at<D>(sphere.center), out = Vec<D>::Constant(sphere.radius / unit_);
-    return imaged(pointer, core::ball_region<D>(center, sphere.radius / unit_), center - out, center + out);
+    const core::BorderMotion<D> motion{.spin = spin(sphere.angular_velocity), .center = center};
+    return imaged(pointer, core::moving<D>(core::ball_region<D>(center, sphere.radius / unit_), motion), center - out,
+                  center + out);
   }
 
   RegionPointer<D> region(const std::string& pointer, const WallShape::Cylinder& cylinder) const {
     double from = at(cylinder.from), to = at(cylinder.to);
     take_ends(cylinder.axis, from, to);
+    if (cylinder.velocity != 0) require_endless(pointer + "/cylinder/velocity", cylinder.axis, from, to);
     const Vec<2> center(at(cylinder.center[0]), at(cylinder.center[1]));
     const double radius = cylinder.radius / unit_;
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(cylinder.axis);
+    core::BorderMotion<D> motion{.velocity = (cylinder.velocity / unit_ * axis).head<D>(),
+                                 .spin = spin(cylinder.angular_velocity * axis)};
     Vec<D> lower, upper;
     for (int k = 0, across = 0; k < D; ++k) {
       const bool along = k == cylinder.axis;
+      if (!along) motion.center[k] = center[across];
       lower[k] = along ? from : center[across] - radius, upper[k] = along ? to : center[across] + radius;
       if (!along) ++across;
     }
-    return imaged(pointer, round_about(cylinder.axis, center, radius, from, to, here), lower, upper);
+    return imaged(pointer, core::moving<D>(round_about(cylinder.axis, center, radius, from, to, here), motion), lower,
+                  upper);
   }
 
   RegionPointer<D> region(const std::string& pointer, const WallShape::Outline& outline) const {

@@ -164,6 +164,18 @@ class Field:
         return Field(layer[..., :2] if layer.ndim == 3 else layer, self.unit, self.x, self.y)
 
 
+class Walls(list["Floats"]):
+    """Polygons around walls (Frame.walls), and what the walls' surface has: its facets, segments or in three dimensions triangles."""
+
+    facets: Floats  #: [m, 2, 2] in m, with the wall at their left; in three dimensions [m, 3, 3], triangles
+    shear_stress: Floats | None  #: [m, 2] or [m, 3] in Pa: force of the fluid along each facet, per area; None where it was not written
+
+    def __init__(self, polygons: Sequence[Floats] = (), facets: Floats | None = None, shear_stress: Floats | None = None) -> None:
+        super().__init__(polygons)
+        self.facets = numpy.zeros((0, 2, 2)) if facets is None else facets
+        self.shear_stress = shear_stress
+
+
 @dataclasses.dataclass(frozen=True)
 class Frame:
     """Cells and fields at an instant."""
@@ -175,7 +187,7 @@ class Frame:
     size_m: tuple[float, float]  #: of the box along x and y, m
     cells: list[Cell]  #: those that are there, by their numbers
     fields: dict[str, Field]  #: by name: velocity, density, viscosity, vorticity; empty where none were due
-    walls: Sequence[Floats] = ()  #: polygons [n, 2] in m around walls that are no planes, which lie at their left; in three dimensions around those that the plane across z through the middle cuts
+    walls: Sequence[Floats] = ()  #: polygons [n, 2] in m around walls that are no planes, which lie at their left; in three dimensions around those that the plane across z through the middle cuts. Of a run's frame: Walls
     box_m: tuple[float, ...] = ()  #: of the box along every axis, m: three lengths in three dimensions
 
     def field(self, name: str) -> Field:
@@ -551,6 +563,8 @@ class Run(Outputs):
                         "curvature": curvature[b:e],
                         "triangles": triangles[(triangles[:, 0] >= b) & (triangles[:, 0] < e)] - b}
                     cells.append(Cell(int(cell_of[b]), int(aggregate[b]), points[b:e], tension[b:e], **surface))
+            sheared = _part(frame, "walls")
+            on_walls = None if sheared is None else _part(sheared, "wall_shear_stress")[:]
             fields: dict[str, Field] = {}
             shown = _part(frame, "fields")
             for name in shown or ():
@@ -568,17 +582,23 @@ class Run(Outputs):
                 places = [begin[k] + spacing[k] * numpy.arange(values.shape[axes - 1 - k]) for k in range(axes)]
                 fields[name] = Field(values, _text(data.attrs["unit"]), *places)
         return Frame(int(row["step"]), float(row["time_s"]), float(row["strain"]), str(row["stage_name"]),
-                     (size[0], size[1]), cells, fields, self._walls(), size)
+                     (size[0], size[1]), cells, fields, self._walls(on_walls), size)
 
-    def _walls(self) -> list[Floats]:
+    def _walls(self, shear_stress: Floats | None) -> Walls:
         """Frame.walls, which the first file of frames has."""
         with _opened(self._frame_files()[0]) as file:
             group = _part(file, "walls")
             first = None if group is None else _part(group, "first")
             if group is None or first is None:
-                return []
+                return Walls()
             corners = _part(group, "corners")[:]
-            return [corners[b:e] for b, e in zip(first[:-1], first[1:])]
+            points, facets = _part(group, "points"), _part(group, "triangles")
+            if points is None or facets is None:
+                points, facets = corners, _part(group, "segments")
+            places = None if facets is None else points[:][facets[:]]
+            if shear_stress is not None and places is not None:
+                shear_stress = shear_stress[:, :places.shape[2]]
+            return Walls([corners[b:e] for b, e in zip(first[:-1], first[1:])], places, shear_stress)
 
 
 #: Share of columns without cells from which on a mean cell-free layer says nothing.

@@ -16,10 +16,12 @@ constexpr int many_nodes = 4000;              // whose forces and weights do not
 
 template <class T, int D>
 Coupling<T, D>::Coupling(KernelKind kernel, const Domain<D>& domain, const SolidNodes<D>* solid,
-                         const RegionPointer<D>& region)
+                         const RegionPointer<D>& region, double wall_time)
     : loops_(StencilLoops<T, D>::of(kernel)), domain_(domain) {
   if (solid != nullptr && !region) throw std::invalid_argument("cells beside solid nodes need the region of the fluid");
-  if (solid != nullptr) reach_ = std::make_unique<const WallReach<D>>(domain, *solid, *region, loops_->points);
+  if (solid != nullptr)
+    reach_ = std::make_unique<const WallReach<D>>(domain, *solid, *region, loops_->points, wall_time);
+  walls_move_ = wall_time != 0;
 }
 
 template <class T, int D>
@@ -32,6 +34,7 @@ void Coupling<T, D>::reserve(const Cells<D>& cells) {
   bases_.assign(cells.cells.size(), {0, 0});
   if (!reach_) return;
   factors_ = PagedArray<double>(nodes);
+  for (int k = 0; k < D && walls_move_; ++k) carried_[k] = PagedArray<double>(nodes);
   beside_wall_.assign(cells.cells.size(), 0);
 }
 
@@ -64,12 +67,16 @@ void Coupling<T, D>::find_factors(const CellRange& cell, int number) {
   beside_wall_[number] = 0;
   for (int i = cell.first; i < cell.end(); ++i) {
     factors_[i] = 1;
+    for (int k = 0; k < D && walls_move_; ++k) carried_[k][i] = 0;
     if (base_[D - 1][i] == outside) continue;
     std::array<int, D> first;
     for (int k = 0; k < D; ++k) first[k] = base_[k][i] + loops_->first;
     if (!reach_->touches(first)) continue;
     factors_[i] = reach_->factor(stencil(i));
     beside_wall_[number] = 1;
+    if (!walls_move_) continue;
+    const Vec<D> carried = reach_->carried(stencil(i), factors_[i]);
+    for (int k = 0; k < D; ++k) carried_[k][i] = carried[k];
   }
 }
 
@@ -148,9 +155,7 @@ void Coupling<T, D>::interpolate(Worker worker, Cells<D>& cells, const VectorFie
     const Range nodes = cells.node_share(worker);
     task.begin = nodes.begin, task.end = nodes.end;
     loops_->interpolate(&task);
-    for (int k = 0; k < D && reach_; ++k) {
-      for (int i = nodes.begin; i < nodes.end; ++i) task.velocity[k][i] *= factors_[i];
-    }
+    for (int i = nodes.begin; i < nodes.end && reach_; ++i) complete(i, task.velocity);
     return;
   }
   task.block = &domain_.block;
@@ -159,7 +164,7 @@ void Coupling<T, D>::interpolate(Worker worker, Cells<D>& cells, const VectorFie
     task.begin = cells.cells[c].first, task.end = cells.cells[c].end();
     loops_->interpolate(&task);
     for (int i = task.begin; i < task.end && reach_ && beside_wall_[c] != 0; ++i) {
-      for (int k = 0; k < D && domain_.block.contains(base(i)); ++k) task.velocity[k][i] *= factors_[i];
+      if (domain_.block.contains(base(i))) complete(i, task.velocity);
     }
   }
 }
@@ -212,6 +217,7 @@ void Coupling<T, D>::forget(std::span<const Range> nodes) {
     for (auto* values : {&p_[k], &q_[k]}) release(*values, nodes);
   }
   if (reach_) release(factors_, nodes);
+  for (int k = 0; k < D && walls_move_; ++k) release(carried_[k], nodes);
 }
 
 template class Coupling<float, 2>;

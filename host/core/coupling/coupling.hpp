@@ -29,9 +29,9 @@ class Coupling {
   /// A number along each axis, of all nodes.
   using Vectors = std::array<const double*, D>;
 
-  /// `solid`, `region`: walls of any shape; null: none.
+  /// `solid`, `region`, `wall_time`: walls of any shape (BasicSolverSetup); null: none.
   Coupling(KernelKind kernel, const Domain<D>& domain, const SolidNodes<D>* solid = nullptr,
-           const RegionPointer<D>& region = {});
+           const RegionPointer<D>& region = {}, double wall_time = 0);
 
   /// Makes room for these nodes; to be called once, before the first locate().
   void reserve(const Cells<D>& cells);
@@ -72,6 +72,10 @@ class Coupling {
   template <class Task>
   void describe(Task& task, const VectorField<T, D>& fields) const;
   [[nodiscard]] std::array<StencilAlong, D> stencil(int node) const;
+  /// What a node reads, of what its stencil has summed up.
+  void complete(int i, double* const (&velocity)[D]) const {
+    for (int k = 0; k < D; ++k) velocity[k][i] = velocity[k][i] * factors_[i] + (walls_move_ ? carried_[k][i] : 0);
+  }
   /// Sets factors_ of a cell that has been located.
   void find_factors(const CellRange& cell, int number);
   /// Reads what spreading will read of a cell.
@@ -87,7 +91,9 @@ class Coupling {
   std::vector<BaseRange> bases_;  // of each located cell's nodes along the last axis; `outside` if one has escaped
   std::unique_ptr<const WallReach<D>> reach_;  // null: plane walls alone
   PagedArray<double> factors_;                 // of the nodes' forces and velocities; none without reach_
-  std::vector<char> beside_wall_;              // of each located cell, whether a factor is not 1
+  std::array<PagedArray<double>, D> carried_;  // velocity that walls which move give to nodes; none where they rest
+  bool walls_move_ = false;
+  std::vector<char> beside_wall_;  // of each located cell, whether a factor is not 1
 };
 
 extern template class Coupling<float, 2>;

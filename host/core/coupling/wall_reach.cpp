@@ -10,8 +10,9 @@
 namespace rouleau::core {
 
 template <int D>
-WallReach<D>::WallReach(const Domain<D>& domain, const SolidNodes<D>& solid, const Region<D>& region, int of_stencil)
-    : domain_(domain), points_(of_stencil), around_(domain.block) {
+WallReach<D>::WallReach(const Domain<D>& domain, const SolidNodes<D>& solid, const Region<D>& region, int of_stencil,
+                        double time)
+    : domain_(domain), points_(of_stencil), time_(time), region_(&region), around_(domain.block) {
   std::size_t count = 1;
   for (int k = 0; k < D; ++k) {
     around_.begin[k] -= points_ - 1, around_.end[k] += points_ - 1;
@@ -87,6 +88,21 @@ double WallReach<D>::factor(const Stencil& stencil) const {
   if (!(of_fluid > 0)) return 1;
   constexpr double most = 1.5;  // with weights that are negative in the solid
   return std::min(std::abs(all) / of_fluid, all > 0 ? most : 1);
+}
+
+template <int D>
+Vec<D> WallReach<D>::carried(const Stencil& stencil, double factor) const {
+  double of_fluid = 0;
+  for_rows(stencil, [&](const Node&, std::size_t place, double weight) {
+    for (std::size_t x = 0; x < static_cast<std::size_t>(points_); ++x)
+      of_fluid += solid_[place + x] != 0 ? 0 : weight * stencil[0].weight[x];
+  });
+  Vec<D> middle = Vec<D>::Zero();
+  for (int k = 0; k < D; ++k) {
+    for (int i = 0; i < points_; ++i)
+      middle[k] += stencil[k].weight[static_cast<std::size_t>(i)] * (stencil[k].first + i);
+  }
+  return (1 - factor * of_fluid) * time_ * region_->velocity(middle);
 }
 
 template <int D>

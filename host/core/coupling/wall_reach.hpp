@@ -22,15 +22,17 @@ namespace rouleau::core {
 /// distance. k is 1 where the solid has no weight and 0 on the wall. Where the sum is negative, beyond a wall and in
 /// the tip of a corner that the lattice does not resolve, k is its magnitude and at most 1: a node that got there goes
 /// with the fluid and obeys forces. So with weights that are not negative k lies between 0 and 1, and no force grows.
-/// Spreading and reading are adjoint, and walls take what does not reach the fluid.
+/// Spreading and reading are adjoint, and walls take what does not reach the fluid. Beside walls that move with u_wall
+/// it is u - u_wall that is read so.
 template <int D>
 class WallReach {
  public:
   using Node = std::array<int, D>;
   using Stencil = std::array<StencilAlong, D>;
 
-  /// Of stencils of so many points that touch the domain's block.
-  WallReach(const Domain<D>& domain, const SolidNodes<D>& solid, const Region<D>& region, int points);
+  /// Of stencils of so many points that touch the domain's block. `time`: as in SolidLinks; the region is used then as
+  /// long as this lives.
+  WallReach(const Domain<D>& domain, const SolidNodes<D>& solid, const Region<D>& region, int points, double time = 0);
 
   /// Whether a stencil whose first node is an image of this one touches the block and has solid nodes.
   [[nodiscard]] bool touches(const Node& first) const {
@@ -39,6 +41,8 @@ class WallReach {
   }
   /// k, if it does.
   [[nodiscard]] double factor(const Stencil& stencil) const;
+  /// What is read with this factor beside what the fluid gives: the walls' velocity times what is lacking of it.
+  [[nodiscard]] Vec<D> carried(const Stencil& stencil, double factor) const;
   /// What walls take of a force with such a stencil: those across y what is spread beyond them, as without solid nodes
   /// (add_wall_share), all others together the rest.
   void add_share(const std::array<double, D>& force, const Stencil& stencil, WallForceSums<D>& sums) const;
@@ -80,6 +84,8 @@ class WallReach {
 
   Domain<D> domain_;
   int points_;
+  double time_;
+  const Region<D>* region_;
   Box<D> around_;                 ///< the block and what stencils that touch it reach
   std::vector<char> solid_;       ///< of its nodes
   std::vector<char> touches_;     ///< of first nodes of stencils

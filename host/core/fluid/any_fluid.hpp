@@ -31,8 +31,9 @@ struct FluidSetting {
   bool membranes = false;                 ///< keep force and velocity where nodes are active
   int stencil_above = 2;  ///< how far above the node below a membrane's own a stencil reaches; one less below it
   bool viscosity_contrast = false;  ///< keep a relaxation rate where nodes are active
-  /// Walls of any shape, at rest; null: none.
+  /// Walls of any shape; null: none. `wall_time`: of a step, in the unit of their velocities; 0: they rest.
   std::shared_ptr<const SolidNodes<D>> solid = {};
+  double wall_time = 0;
   Openings openings = {};  ///< of a domain that is not periodic along x
 };
 
@@ -49,6 +50,10 @@ struct Moments {
   std::array<double, D> velocity;  ///< with half the force
 };
 
+/// Viscous stress: xx, xy, yy; in three dimensions xx, xy, xz, yy, yz, zz.
+template <int D>
+using Stress = std::array<double, static_cast<std::size_t>(D*(D + 1) / 2)>;
+
 /// What of the fluid's energy there is and what becomes of it, summed over all nodes; state as moments have it.
 template <int D>
 struct Energetics {
@@ -56,6 +61,7 @@ struct Energetics {
   double dissipation;              ///< what viscosity takes in a step, see energetics.cpp
   std::array<double, D> velocity;  ///< sums of u
   double membrane_power;           ///< of the forces beside the body force, f . u
+  double wall_power;               ///< of walls of any shape
 };
 
 /// What is measured of the whole lattice in one sweep over the populations, and what of it is wanted.
@@ -108,6 +114,8 @@ class AnyFluid {
   /// Moments before the next step, whose force must have been spread; and 1/tau.
   virtual void gather_moments(const Bands<D>& bands, const Take<NodeMoments>& take) const = 0;
   virtual void gather_relaxation_rates(const Bands<D>& bands, const Take<double>& take) const = 0;
+  /// Of a settled fluid; 0 in the solid.
+  virtual void gather_stresses(const Bands<D>& bands, const Take<Stress<D>>& take) const = 0;
   /// Populations of one velocity before the next collision, exact, 0 in the solid.
   virtual void gather_populations(int q, const Bands<D>& bands, const Take<double>& take) const = 0;
   /// The same of the block, row after row.

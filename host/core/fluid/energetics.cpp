@@ -293,6 +293,10 @@ void EnergySum<T, Set>::add(int i) {
       const double f = static_cast<double>(at.in[link.q][link.x]), left = static_cast<double>(link.left);
       const double speed = link.plane ? c[0] * task.wall_speed[1 - c[1]] : 0;
       sums_[dissipation].add(-(link.plane ? left - f : left) * change);
+      if (const double wall = state_.links->wall_velocity(link); wall != 0) {
+        sums_[wall_power].add((left + f) * wall);
+        sums_[dissipation].add((left + f) * wall);
+      }
       if (speed != 0) sums_[dissipation].add(-(2 * f + 6 * Set::weight[link.q] * (change - speed)) * speed);
     }
   });
@@ -319,7 +323,8 @@ auto EnergySum<T, Set>::total(const Ranks<dimension>& ranks) -> Energetics<dimen
   Energetics<dimension> energetics{.kinetic = sums_[kinetic].value(),
                                    .dissipation = sums_[dissipation].value(),
                                    .velocity = {},
-                                   .membrane_power = sums_[membrane_power].value()};
+                                   .membrane_power = sums_[membrane_power].value(),
+                                   .wall_power = sums_[wall_power].value()};
   for (int k = 0; k < dimension; ++k) energetics.velocity[k] = sums_[sum_of_velocity + k].value();
   return energetics;
 }

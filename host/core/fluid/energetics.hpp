@@ -55,7 +55,7 @@ class EnergySum {
   [[nodiscard]] Energetics<dimension> total(const Ranks<dimension>& ranks);
 
  private:
-  enum { kinetic, membrane_power, dissipation, sum_of_velocity };
+  enum { kinetic, membrane_power, wall_power, dissipation, sum_of_velocity };
   void exchange_edges();
   void find_row(int from, const Row& row);
   void find_layer(int layer);

@@ -229,6 +229,12 @@ void Fluid<T, Set>::gather_relaxation_rates(const Bands<dimension>& bands, const
 }
 
 template <class T, class Set>
+void Fluid<T, Set>::gather_stresses(const Bands<dimension>& bands, const Take<Stress<dimension>>& take) const {
+  gather_bands<Stress<dimension>>(
+      ranks_, setting_.domain, bands, [&](int i, Stress<dimension>* to) { copy_stresses(state_, i, to); }, take);
+}
+
+template <class T, class Set>
 void Fluid<T, Set>::gather_populations(int q, const Bands<dimension>& bands, const Take<double>& take) const {
   gather_bands<double>(
       ranks_, setting_.domain, bands, [&](int i, double* to) { copy_population(state_, q, i, to); }, take);

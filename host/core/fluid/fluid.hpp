@@ -103,6 +103,7 @@ class Fluid final : public AnyFluid<Set::dimension> {
   void moments(int i, std::vector<NodeMoments>& values) const;
   void gather_moments(const Bands<dimension>& bands, const Take<NodeMoments>& take) const override;
   void gather_relaxation_rates(const Bands<dimension>& bands, const Take<double>& take) const override;
+  void gather_stresses(const Bands<dimension>& bands, const Take<Stress<dimension>>& take) const override;
   void gather_populations(int q, const Bands<dimension>& bands, const Take<double>& take) const override;
   void copy_populations(int q, std::vector<double>& values) const override;
   [[nodiscard]] int populations() const override { return velocity_count; }

@@ -189,6 +189,36 @@ void copy_relaxation_rates(const FluidState<T, Set>& state, int i, double* to) {
   });
 }
 
+// What populations hold of the flux of momentum beyond their equilibrium is all viscous: -(1 - rate/2) of it is the
+// stress, whatever operator relaxes it at that rate.
+template <class T, class Set>
+void copy_stresses(const FluidState<T, Set>& state, int i, Stress<Set::dimension>* to) {
+  constexpr int dimension = Set::dimension;
+  const auto nx = static_cast<std::size_t>(state.nx());
+  std::vector<Moments<dimension>> moments(nx);
+  std::vector<double> rates(nx);
+  copy_moments(state, i, moments.data());
+  copy_relaxation_rates(state, i, rates.data());
+  std::fill_n(to, nx, Stress<dimension>{});
+  state.for_fluid(i, [&](int begin, int end, const auto& in) {
+    for (int x = begin; x < end; ++x) {
+      const Moments<dimension>& node = moments[static_cast<std::size_t>(x)];
+      const auto& u = node.velocity;
+      auto stress = to[x].begin();
+      for (int k = 0; k < dimension; ++k) {
+        for (int l = k; l < dimension; ++l) {
+          double flux = k == l ? -node.density / 3 : 0;
+          Set::for_each_velocity(
+              [&](auto q) { flux += Set::velocity[q][k] * Set::velocity[q][l] * static_cast<double>(in[q][x]); });
+          flux -= u[k] * u[l];
+          if (!state.setting.inertia) flux += (u[k] - state.frame[k]) * (u[l] - state.frame[l]);
+          *stress++ = -(1 - rates[static_cast<std::size_t>(x)] / 2) * flux;
+        }
+      }
+    }
+  });
+}
+
 template <class T, class Set>
 void copy_population(const FluidState<T, Set>& state, int q, int i, double* to) {
   state.for_fluid(i, [&](int begin, int end, const auto& in) { std::copy(in[q] + begin, in[q] + end, to + begin); });
@@ -327,6 +357,7 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
 #define ROULEAU_INSTANTIATE(T, Set, D)                                                                       \
   template void copy_moments(const FluidState<T, Set>&, int, Moments<D>*);                                   \
   template void copy_relaxation_rates(const FluidState<T, Set>&, int, double*);                              \
+  template void copy_stresses(const FluidState<T, Set>&, int, Stress<D>*);                                   \
   template void copy_population(const FluidState<T, Set>&, int, int, double*);                               \
   template FluidMeasures<D> measure(const FluidState<T, Set>&, const Ranks<D>&, const FluidHalo<T, Set>*,    \
                                     const WallVelocity&, WantedMeasures);                                    \

@@ -10,11 +10,13 @@
 
 namespace rouleau::core {
 
-/// Moments, 1/tau and populations of row i, x = 0..nx-1.
+/// Moments, 1/tau, viscous stresses and populations of row i, x = 0..nx-1.
 template <class T, class Set>
 void copy_moments(const FluidState<T, Set>& state, int i, Moments<Set::dimension>* to);
 template <class T, class Set>
 void copy_relaxation_rates(const FluidState<T, Set>& state, int i, double* to);
+template <class T, class Set>
+void copy_stresses(const FluidState<T, Set>& state, int i, Stress<Set::dimension>* to);
 template <class T, class Set>
 void copy_population(const FluidState<T, Set>& state, int q, int i, double* to);
 

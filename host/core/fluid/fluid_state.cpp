@@ -30,7 +30,7 @@ FluidState<T, Set>::FluidState(const FluidSetting<dimension>& of_fluid)
     rate_of_height.push_back(rate_of_layer(setting.relaxation_rate, ratio));
   }
   set_plain_rates();
-  if (setting.solid) links = std::make_unique<SolidLinks<T, Set>>(lattice, *setting.solid);
+  if (setting.solid) links = std::make_unique<SolidLinks<T, Set>>(lattice, *setting.solid, setting.wall_time);
   for (int i = 0; setting.solid && i <= lattice.rows(); ++i) {
     fluid_below.push_back(i == 0 ? 0 : fluid_below.back());
     if (i > 0) mask.for_fluid(i - 1, [&](int begin, int end) { fluid_below.back() += end - begin; });
@@ -171,7 +171,7 @@ void FluidState<T, Set>::restart() {
   parity = Parity::even;
   for (int i = 0; i < lattice.rows(); ++i) send_row(lattice, lattice.row(i));
   for (int i = 0; i < lattice.rows(); ++i)
-    for_links(i, [&](std::size_t piece, const Pointers& at) { links->after_step(piece, at.out); });
+    for_links(i, [&](std::size_t piece, const Pointers& at) { links->restart(piece, at.out); });
   if (openings) openings->restart();
 }
 

@@ -14,7 +14,7 @@
 
 namespace rouleau::core {
 
-/// A mark for every node of the whole lattice. Between a fluid node and a solid one lies a wall at rest.
+/// A mark for every node of the whole lattice. Between a fluid node and a solid one lies a wall.
 template <int D>
 class SolidNodes {
  public:
@@ -42,6 +42,7 @@ class SolidNodes {
       : SolidNodes(
             size, [&](const Node& node) { return region->distance(place_of(node)).value <= 0; },
             [region](const Node& node, const Node& to) { return region->share_inside(place_of(node), place_of(to)); }) {
+    region_ = std::move(region);
   }
 
   [[nodiscard]] const Node& size() const { return size_; }
@@ -63,11 +64,17 @@ class SolidNodes {
     return at(node);
   }
   [[nodiscard]] double cut(const Node& node, const Node& to) const { return cut_ ? cut_(node, to) : 0.5; }
+  /// Of the wall at that cut, in the region's unit of time.
+  [[nodiscard]] Vec<D> velocity(const Node& node, const Node& to) const {
+    if (!region_) return Vec<D>::Zero();
+    return region_->velocity(place_of(node) + cut(node, to) * place_of(to));
+  }
   [[nodiscard]] long fluid_count() const { return fluid_count_; }
 
  private:
   Node size_;
   Cut cut_;
+  RegionPointer<D> region_;  ///< null: walls at rest
   std::vector<bool> solid_;
   long fluid_count_ = 0;
 

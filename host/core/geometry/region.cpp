@@ -31,9 +31,27 @@ double Region<D>::share_inside(const Vec<D>& place, const Vec<D>& by) const {
 namespace {
 
 template <int D>
+class Moving final : public Region<D> {
+ public:
+  Moving(RegionPointer<D> region, const BorderMotion<D>& motion) : region_(std::move(region)), motion_(motion) {}
+  [[nodiscard]] Distance<D> distance(const Vec<D>& place) const override { return region_->distance(place); }
+  [[nodiscard]] double share_inside(const Vec<D>& place, const Vec<D>& by) const override {
+    return region_->share_inside(place, by);
+  }
+  [[nodiscard]] Vec<D> velocity(const Vec<D>& place) const override {
+    return motion_.velocity + motion_.spin * (place - motion_.center);
+  }
+
+ private:
+  RegionPointer<D> region_;
+  BorderMotion<D> motion_;
+};
+
+template <int D>
 class Outside final : public Region<D> {
  public:
   explicit Outside(RegionPointer<D> region) : region_(std::move(region)) {}
+  [[nodiscard]] Vec<D> velocity(const Vec<D>& place) const override { return region_->velocity(place); }
   [[nodiscard]] Distance<D> distance(const Vec<D>& place) const override {
     const Distance<D> inside = region_->distance(place);
     return {-inside.value, -inside.gradient};
@@ -48,16 +66,21 @@ template <int D>
 class Joined final : public Region<D> {
  public:
   Joined(std::vector<RegionPointer<D>> regions, bool least) : regions_(std::move(regions)), least_(least) {}
-  [[nodiscard]] Distance<D> distance(const Vec<D>& place) const override {
-    Distance<D> chosen = regions_.front()->distance(place);
+  [[nodiscard]] Distance<D> distance(const Vec<D>& place) const override { return choose(place).second; }
+  [[nodiscard]] Vec<D> velocity(const Vec<D>& place) const override {
+    return regions_[choose(place).first]->velocity(place);
+  }
+
+ private:
+  [[nodiscard]] std::pair<std::size_t, Distance<D>> choose(const Vec<D>& place) const {
+    std::pair<std::size_t, Distance<D>> chosen{0, regions_.front()->distance(place)};
     for (std::size_t i = 1; i < regions_.size(); ++i) {
       const Distance<D> other = regions_[i]->distance(place);
-      if (least_ ? other.value < chosen.value : other.value > chosen.value) chosen = other;
+      if (least_ ? other.value < chosen.second.value : other.value > chosen.second.value) chosen = {i, other};
     }
     return chosen;
   }
 
- private:
   std::vector<RegionPointer<D>> regions_;
   bool least_;
 };
@@ -74,6 +97,9 @@ class Magnified final : public Region<D> {
   [[nodiscard]] double share_inside(const Vec<D>& place, const Vec<D>& by) const override {
     return region_->share_inside((place - shift_) / scale_, by / scale_);
   }
+  [[nodiscard]] Vec<D> velocity(const Vec<D>& place) const override {
+    return scale_ * region_->velocity((place - shift_) / scale_);
+  }
 
  private:
   RegionPointer<D> region_;
@@ -86,22 +112,30 @@ class Repeated final : public Region<D> {
  public:
   Repeated(RegionPointer<D> region, const Vec<D>& middle, const Domain<D>& domain)
       : region_(std::move(region)), middle_(middle), domain_(domain) {}
-  [[nodiscard]] Distance<D> distance(const Vec<D>& place) const override {
+  [[nodiscard]] Distance<D> distance(const Vec<D>& place) const override { return region_->distance(near(place)); }
+  [[nodiscard]] Vec<D> velocity(const Vec<D>& place) const override { return region_->velocity(near(place)); }
+
+ private:
+  [[nodiscard]] Vec<D> near(const Vec<D>& place) const {
     Vec<D> near = place;
     for (int k = 0; k < D; ++k) {
       const double period = domain_.period(k);
       if (period > 0) near[k] -= period * std::round((place[k] - middle_[k]) / period);
     }
-    return region_->distance(near);
+    return near;
   }
 
- private:
   RegionPointer<D> region_;
   Vec<D> middle_;
   Domain<D> domain_;
 };
 
 }  // namespace
+
+template <int D>
+RegionPointer<D> moving(RegionPointer<D> region, const BorderMotion<D>& motion) {
+  return motion.any() ? std::make_shared<Moving<D>>(std::move(region), motion) : std::move(region);
+}
 
 template <int D>
 RegionPointer<D> outside_of(RegionPointer<D> region) {
@@ -132,6 +166,8 @@ RegionPointer<D> repeated(RegionPointer<D> region, const Vec<D>& middle, const D
 
 template class Region<2>;
 template class Region<3>;
+template RegionPointer<2> moving(RegionPointer<2>, const BorderMotion<2>&);
+template RegionPointer<3> moving(RegionPointer<3>, const BorderMotion<3>&);
 template RegionPointer<2> outside_of(RegionPointer<2>);
 template RegionPointer<3> outside_of(RegionPointer<3>);
 template RegionPointer<2> intersection(std::vector<RegionPointer<2>>);

@@ -26,10 +26,25 @@ class Region {
   [[nodiscard]] virtual Distance<D> distance(const Vec<D>& place) const = 0;
   /// Share of the way from a place inside to one outside, `by` away, at which it meets the border: in [0, 1].
   [[nodiscard]] virtual double share_inside(const Vec<D>& place, const Vec<D>& by) const;
+  /// Of the border nearest to a place, along which it moves: spacings in any unit of time.
+  [[nodiscard]] virtual Vec<D> velocity(const Vec<D>&) const { return Vec<D>::Zero(); }
 };
 
 template <int D>
 using RegionPointer = std::shared_ptr<const Region<D>>;
+
+/// How a border moves along itself, so that it stays where it is.
+template <int D>
+struct BorderMotion {
+  Vec<D> velocity = Vec<D>::Zero();
+  Eigen::Matrix<double, D, D> spin = Eigen::Matrix<double, D, D>::Zero();  ///< gradient of the velocity
+  Vec<D> center = Vec<D>::Zero();                                          ///< where the velocity is that
+
+  [[nodiscard]] bool any() const { return !velocity.isZero(0) || !spin.isZero(0); }
+};
+/// A region with a border that moves.
+template <int D>
+RegionPointer<D> moving(RegionPointer<D> region, const BorderMotion<D>& motion);
 
 /// All space but a region.
 template <int D>

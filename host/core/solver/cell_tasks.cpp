@@ -30,7 +30,7 @@ CellTasks<T, D>::CellTasks(const BasicSolverSetup<D>& setup, Cells<D>& cells, Fl
       viscosity_field_(cells, viscosity_ratios(setup), slip_ ? ViscosityMean::harmonic : ViscosityMean::arithmetic,
                        extra_reach(setup), 1 / setup.tau, setup.domain, fluid.setting().viscosity_of_rows,
                        smooths_edges(setup.kernel, D)),
-      coupling_(setup.kernel, setup.domain, setup.solid.get(), setup.region) {
+      coupling_(setup.kernel, setup.domain, setup.solid.get(), setup.region, setup.wall_time) {
   cells_.largest_step.resize(cells_.cells.size(), 0.0);
   if (setup.area_correction) cells_.area_leakage.resize(cells_.cells.size(), 0.0);  // earlier leakage stays
   if (!setup.interactions.empty() || !setup.self_interactions.empty()) {

@@ -81,6 +81,7 @@ FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const Cells& cel
                           .stencil_above = stencil_above(setup.kernel),
                           .viscosity_contrast = has_contrast(setup, cells),
                           .solid = setup.solid,
+                          .wall_time = setup.wall_time,
                           .openings = setup.openings};
   const double body_force[] = {setup.body_force_x, setup.body_force_y, setup.body_force_z};
   std::copy_n(body_force, D, setting.body_force.begin());

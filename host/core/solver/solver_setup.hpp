@@ -36,10 +36,11 @@ struct BasicSolverSetup {
   /// Of an x that is not periodic. Cells come and go between steps (AnySolver::renew_cells): their nodes stay so far
   /// from openings that no stencil of the kernel reaches beyond.
   Openings openings = {};
-  /// Walls of any shape, at rest, beside those across y and z: the region of the fluid, with images along periodic
-  /// axes, and the domain's nodes outside of it; null: none.
+  /// Walls of any shape, beside those across y and z: the region of the fluid, with images along periodic axes, and the
+  /// domain's nodes outside of it; null: none. `wall_time`: of a step, in the unit of their velocities; 0: they rest.
   RegionPointer<D> region = {};
   std::shared_ptr<const SolidNodes<D>> solid = {};
+  double wall_time = 0;
   /// Area of their walls, in two dimensions length, that the mean stress on them is of; 0: not known.
   double wall_area = 0;
   /// From wall to wall at the widest place, which a mean velocity is kept by; 0: the domain's height.
