@@ -13,6 +13,7 @@
 
 using namespace rouleau;
 using namespace rouleau::files;
+using rouleau::observe::wall_border;
 using namespace rouleau::test;
 using Catch::Contains;
 
