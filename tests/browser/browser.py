@@ -105,7 +105,7 @@ class Page:
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=2 if touch else 1, mobile=touch)
         self.media(scheme, still=still)
         self.call("Page.navigate", url=url)
-        self.wait("document.readyState === 'complete'")
+        self.wait("document.readyState === 'complete'", browser.patience)
 
     def close(self):
         self.browser.call("Target.closeTarget", targetId=self.target)
