@@ -60,7 +60,6 @@ class RowPieces {
 
   /// Whether all nodes are there.
   [[nodiscard]] bool all() const { return first_piece_.empty(); }
-  /// Numbers in the array.
   [[nodiscard]] std::ptrdiff_t count() const { return count_; }
   [[nodiscard]] std::size_t first_piece(int row) const { return first_piece_[static_cast<std::size_t>(row)]; }
   [[nodiscard]] const RowPiece& piece(std::size_t number) const { return pieces_[number]; }
