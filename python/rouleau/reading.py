@@ -458,7 +458,8 @@ class Run(Outputs):
                         frame = _part(all_frames, name)
                         about = frame.attrs
                         rows.append((int(about["step"]), float(about["time_s"]), float(about["strain"]),
-                                     _text(about["stage_name"]), len(_part(frame, "fields") or ()) > 0, path.name, name))
+                                     _text(about["stage_name"]),
+                                     len(_part(frame, "fields") or ()) > 0 or _part(frame, "walls") is not None, path.name, name))
             except (OSError, KeyError, RuntimeError):
                 if finished:
                     raise Error(Fault("this file is damaged", "rouleau verify says what has changed", str(path)), exit_code=4) from None
