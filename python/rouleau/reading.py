@@ -171,6 +171,7 @@ class Walls(list["Floats"]):
     shear_stress: Floats | None  #: [m, 2] or [m, 3] in Pa: force of the fluid along each facet, per area; None where it was not written
 
     def __init__(self, polygons: Sequence[Floats] = (), facets: Floats | None = None, shear_stress: Floats | None = None) -> None:
+        import numpy
         super().__init__(polygons)
         self.facets = numpy.zeros((0, 2, 2)) if facets is None else facets
         self.shear_stress = shear_stress
@@ -589,17 +590,19 @@ class Run(Outputs):
         """Frame.walls, which the first file of frames has."""
         with _opened(self._frame_files()[0]) as file:
             group = _part(file, "walls")
-            first = None if group is None else _part(group, "first")
-            if group is None or first is None:
+            if group is None:
                 return Walls()
-            corners = _part(group, "corners")[:]
+            polygons: list[Floats] = []
             points, facets = _part(group, "points"), _part(group, "triangles")
-            if points is None or facets is None:
-                points, facets = corners, _part(group, "segments")
-            places = None if facets is None else points[:][facets[:]]
+            if (first := _part(group, "first")) is not None:
+                corners = _part(group, "corners")
+                polygons = [corners[b:e] for b, e in zip(first[:-1], first[1:])]
+                if facets is None:
+                    points, facets = corners, _part(group, "segments")
+            places = None if facets is None or points is None else points[:][facets[:]]
             if shear_stress is not None and places is not None:
                 shear_stress = shear_stress[:, :places.shape[2]]
-            return Walls([corners[b:e] for b, e in zip(first[:-1], first[1:])], places, shear_stress)
+            return Walls(polygons, places, shear_stress)
 
 
 #: Share of columns without cells from which on a mean cell-free layer says nothing.

@@ -238,7 +238,10 @@ class Fields_in_space(Case):
         scene["cells"] = []
         scene["stages"] = [{"name": "flow", "pressure_gradient": "1e5 Pa/m", "duration": "60 ms"}]
         scene["output"]["fields"]["seconds"] = "60 ms"
+        scene["output"]["fields"]["quantities"].append("wall_shear_stress")
         frame = self.last_frame(scene, "tube")
+        self.assertEqual(frame.walls.shear_stress.shape, frame.walls.facets.shape[::2])
+        self.assertLess(abs(frame.walls.shear_stress.mean(axis=0) - [1e5 * 3.8e-6 / 2, 0, 0]).max(), 2e-3)  # G R / 2
         field = frame.field("vorticity")
         y, z = numpy.meshgrid(field.y - 4e-6, field.z - 4e-6)
         radius = numpy.hypot(y, z)
