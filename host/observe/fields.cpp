@@ -8,6 +8,9 @@
 
 #include "core/fluid/relaxation.hpp"
 #include "core/solver/in_order.hpp"
+#include "scene/lattice.hpp"
+#include "walls/wall_border.hpp"
+#include "walls/wall_shear.hpp"
 
 namespace rouleau::observe {
 
@@ -260,7 +263,22 @@ void add_curvatures(const core::Surfaces& surfaces, int cell, double spacing, st
 template <int D>
 FieldSnapshot observe_fields(const core::AnyFluid<D>& fluid, const scene::Scene& scene,
                              const units::LatticeUnits& units, std::size_t bytes) {
-  return fields_of(fluid, scene, units, bytes);
+  FieldSnapshot snapshot = fields_of(fluid, scene, units, bytes);
+  if (!scene.output.wants(shear_stress)) return snapshot;
+  std::vector<core::Vec<D>> middles;
+  if (fluid.ranks().first()) middles = facet_middles<D>(wall_border(scene));
+  for (core::Vec<D>& place : middles) place = place / units.length - core::Vec<D>::Constant(0.5);
+  const double pascal = units.to_si(1, units::dimension::pressure);
+  snapshot.on_walls.push_back({shear_stress, "Pa", 3, [&fluid, &scene, middles, pascal](const Field::Take& take) {
+                                 const WallShear<D> shear(*scene::fluid_region<D>(scene), fluid.setting().domain,
+                                                          *fluid.setting().solid, middles);
+                                 std::vector<double> values;
+                                 for (const core::Vec<D>& of_facet : shear.of(fluid)) {
+                                   for (int k = 0; k < 3; ++k) values.push_back(k < D ? of_facet[k] * pascal : 0);
+                                 }
+                                 if (!values.empty()) take(values);
+                               }});
+  return snapshot;
 }
 
 template FieldSnapshot observe_fields(const core::AnyFluid<2>&, const scene::Scene&, const units::LatticeUnits&,

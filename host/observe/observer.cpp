@@ -15,7 +15,6 @@
 #include "rheology.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/lattice.hpp"
-#include "walls/wall_border.hpp"
 
 namespace rouleau::observe {
 
@@ -236,26 +235,6 @@ void Observer::observe_layers(const core::Cells<D>& cells, const core::Ranks<D>&
 }
 
 template <int D>
-void Observer::observe_wall_shear(const core::AnyFluid<D>& fluid, const units::LatticeUnits& units,
-                                  FieldSnapshot& snapshot) {
-  auto& shear = std::get<std::optional<WallShear<D>>>(wall_shear_);
-  if (!shear) {
-    std::vector<core::Vec<D>> middles;
-    if (fluid.ranks().first()) middles = facet_middles<D>(wall_border(*scene_));
-    for (core::Vec<D>& place : middles) place = place / units.length - core::Vec<D>::Constant(0.5);
-    shear.emplace(*scene::fluid_region<D>(*scene_), fluid.setting().domain, *fluid.setting().solid, middles);
-  }
-  const double pascal = units.to_si(1, units::dimension::pressure);
-  snapshot.on_walls.push_back({shear_stress, "Pa", 3, [&fluid, &shear = *shear, pascal](const Field::Take& take) {
-                                 std::vector<double> values;
-                                 for (const core::Vec<D>& of_facet : shear.of(fluid)) {
-                                   for (int k = 0; k < 3; ++k) values.push_back(k < D ? of_facet[k] * pascal : 0);
-                                 }
-                                 if (!values.empty()) take(values);
-                               }});
-}
-
-template <int D>
 Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures<D>& measured,
                            const scene::StageSetting& setting, bool with_fields) {
   const auto& cells = solver.cells();
@@ -330,7 +309,6 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
   }
   snapshot.energy = observe_energy(solver, measured.energetics.value(), on_walls, units);
   if (with_fields) snapshot.fields = observe_fields(solver.fluid(), *scene_, units);
-  if (with_fields && scene_->output.wants(shear_stress)) observe_wall_shear(solver.fluid(), units, snapshot.fields);
   return snapshot;
 }
 

@@ -15,7 +15,6 @@
 #include "rotation.hpp"
 #include "scene/stage_scales.hpp"
 #include "snapshot.hpp"
-#include "walls/wall_shear.hpp"
 
 namespace rouleau::core {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StretchRange, least, most)
@@ -93,15 +92,12 @@ class Observer {
   void follow_angles(const CellMeasures& measures, CellSnapshot& snapshot);
   template <int D>
   void observe_layers(const core::Cells<D>& cells, const core::Ranks<D>& ranks, double length, Snapshot& snapshot);
-  template <int D>
-  void observe_wall_shear(const core::AnyFluid<D>& fluid, const units::LatticeUnits& units, FieldSnapshot& snapshot);
   void follow_stretch(const core::StretchRange& stretch, CellSnapshot& snapshot);
 
   const scene::Scene* scene_;
   core::Domain<2> domain_;
   /// Of walls of any shape, made when first asked for.
   std::tuple<std::vector<WallPoint<2>>, std::vector<WallPoint<3>>> wall_points_;
-  std::tuple<std::optional<WallShear<2>>, std::optional<WallShear<3>>> wall_shear_;
   // Of each cell that is or was there.
   std::vector<double> initial_area_;                 ///< or volumes
   std::vector<int> marker_;                          ///< the node that tells its tank treading
