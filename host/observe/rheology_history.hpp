@@ -22,7 +22,7 @@ class RheologyHistory {
   ///   stage              its name
   ///   means              over the second half of the stage, {from_s, outputs, and for each column of series.csv that
   ///                      has_means (observables.hpp) {mean, deviation}}: mean in time, by straight lines between
-  ///                      outputs that have a value, and standard deviation of the outputs; null where no output has one
+  ///                      outputs that have a value, and standard deviation of the outputs; null where none has one
   ///   statistics         of each of these columns that has a value: Statistics, in time from the start of the stage
   ///   dissociation       of each aggregate of two or more cells at the stage's start, {members, parted, separate};
   ///                      each of the two {strain, strain_before, time_s} from the start of the stage, or null: at

@@ -32,8 +32,8 @@ class StageCourse {
   /// The same, before the forces of a step: where a window of rest is over the next one begins.
   template <int D>
   Ending end(const core::AnySolver<D>& solver);
-  /// Forces computed, and outputs of this step written: what they say, and the energy of the cells, where the stage ends
-  /// by these and a window is over. Throws Error(bad_input) where the energy is unknown.
+  /// Forces computed, and outputs of this step written: what they say, and the energy of the cells, where the stage
+  /// ends by these and a window is over. Throws Error(bad_input) where the energy is unknown.
   template <int D>
   void look(core::AnySolver<D>& solver);
   /// The next step, after look(), at which the stage may end.

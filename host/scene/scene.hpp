@@ -236,7 +236,7 @@ enum class WallStart { impulsive, developed };
 /// What is added to what drives a stage: amplitudes times sin(2 pi frequency t), t from the start of the stage.
 struct Oscillation {
   double frequency = 0;          ///< Hz; 0: nothing oscillates
-  bool ramp = false;             ///< in place of the sine: from minus to plus these amplitudes over the stage's duration
+  bool ramp = false;             ///< in place of the sine, from minus to plus these over the stage's duration
   double shear_rate = 0;         ///< 1/s
   double mean_wall_speed = 0;    ///< m/s
   double pressure_gradient = 0;  ///< Pa/m

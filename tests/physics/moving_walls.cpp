@@ -14,18 +14,18 @@ using namespace rouleau::test;
 namespace {
 
 using std::numbers::pi;
-constexpr double relaxation = 2, kinematic = (relaxation - 0.5) / 3;
+constexpr double moving_tau = 2, moving_nu = (moving_tau - 0.5) / 3;
 
 /// Of a region whose velocities are per step.
 template <class Set>
 Fluid<double, Set> steady_fluid(const Domain<Set::dimension>& domain, const RegionPointer<Set::dimension>& region,
                                 double width, double push = 0) {
   constexpr int D = Set::dimension;
-  FluidSetting<D> setting{.domain = domain, .relaxation_rate = 1 / relaxation, .wall_time = 1};
+  FluidSetting<D> setting{.domain = domain, .relaxation_rate = 1 / moving_tau, .wall_time = 1};
   setting.body_force[0] = push;
   setting.solid = std::make_shared<const SolidNodes<D>>(domain.size, region);
-  Fluid<double, Set> fluid(setting, make_collision("trt", {0.1875}, relaxation, false, D));
-  advance(fluid, std::lround(20 * width * width / (pi * pi * kinematic)));  // what is missing dies out as exp(-20)
+  Fluid<double, Set> fluid(setting, make_collision("trt", {0.1875}, moving_tau, false, D));
+  advance(fluid, std::lround(20 * width * width / (pi * pi * moving_nu)));  // what is missing dies out as exp(-20)
   fluid.settle();
   return fluid;
 }
@@ -106,10 +106,10 @@ Errors turned(double inner) {
   };
   const auto on_wall = [&](const Vec<2>& place) -> Vec<2> {  // drags the outer one along, holds the inner one back
     const double r = (place - center).norm();
-    return (r < (inner + outer) / 2 ? -1 : 1) * 2 * kinematic * b / (r * r) * around(place) / r;
+    return (r < (inner + outer) / 2 ? -1 : 1) * 2 * moving_nu * b / (r * r) * around(place) / r;
   };
   const double power = fluid.energetics().wall_power;
-  return {profile_error(fluid, *region, velocity), power / spin / (4 * pi * kinematic * b) - 1,
+  return {profile_error(fluid, *region, velocity), power / spin / (4 * pi * moving_nu * b) - 1,
           shear_error(fluid, *region, circle<2>(center, inner), on_wall),
           shear_error(fluid, *region, circle<2>(center, outer), on_wall)};
 }
@@ -151,13 +151,13 @@ TEST_CASE("a rod that slides and turns in a tube takes the fluid along as it mus
       const double turns = b / (r * r) - b / (outer * outer);
       return {slide * std::log(outer / r) / log, -turns * z, turns * y};
     });
-    const double power = 2 * (4 * pi * kinematic * b * spin + 2 * pi * kinematic * slide * slide / log);
+    const double power = 2 * (4 * pi * moving_nu * b * spin + 2 * pi * moving_nu * slide * slide / log);
     const double off = fluid.energetics().wall_power / power - 1;
     const double shear =
         shear_error(fluid, *region, circle<3>(center.tail<2>(), inner), [&](const Vec<3>& place) -> Vec<3> {
           const double y = place[1] - center[1], z = place[2] - center[2], r = std::hypot(y, z),
-                       turns = 2 * kinematic * b / (r * r * r);
-          return {-kinematic * slide / (r * log), turns * z, -turns * y};
+                       turns = 2 * moving_nu * b / (r * r * r);
+          return {-moving_nu * slide / (r * log), turns * z, -turns * y};
         });
     std::cout << "rod of " << inner << " spacings in a tube: profile off by " << profile << ", power by " << off
               << ", shear stress by " << shear << std::endl;

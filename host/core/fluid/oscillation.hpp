@@ -1,12 +1,12 @@
-// What drives a flow between walls and changes in time, by a sine or a ramp; the velocity that the sine settles to.
+// What drives a flow between walls and changes in time, by a sine or a ramp; the velocity to which the sine settles.
 #pragma once
 
 #include "walls.hpp"
 
 namespace rouleau::core {
 
-/// What is added to the walls' speeds and to the body force: amplitudes times sin(2 pi frequency t), or times what rises
-/// from -1 to 1 in `ramp` steps, t in time steps since the fluid was started. Lattice units.
+/// What is added to the walls' speeds and to the body force: amplitudes times sin(2 pi frequency t), or times what
+/// rises from -1 to 1 in `ramp` steps; t in time steps since the fluid was started. Lattice units.
 struct Oscillation {
   WallVelocity walls = {};
   double body_force_x = 0;
