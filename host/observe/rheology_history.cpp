@@ -133,24 +133,25 @@ Json RheologyHistory::statistics(const StageHistory& stage) {
   return result;
 }
 
-bool RheologyHistory::knows(std::string_view column, double standard_error) const {
+bool RheologyHistory::knows(int stage, std::string_view column, double standard_error) const {
   const auto found = std::find_if(averaged().begin(), averaged().end(),
                                   [column](const Observable& observable) { return observable.column() == column; });
-  if (stages_.empty() || found == averaged().end()) return false;
+  if (stage_ != stage || found == averaged().end()) return false;
   const Statistics known = statistics(stages_.back(), static_cast<std::size_t>(found - averaged().begin()));
   return known.steady() && known.standard_error <= standard_error;
 }
 
-bool RheologyHistory::parted() const {
-  if (stages_.empty()) return false;
+bool RheologyHistory::parted(int stage) const {
+  if (stage_ != stage) return false;
   const Instant& start = stages_.back().instants.front();
   const Instant& now = stages_.back().instants.back();
   std::map<int, std::vector<int>> aggregates;
   for (std::size_t i = 0; i < start.cell.size(); ++i) aggregates[start.label[i]].push_back(start.cell[i]);
-  return std::none_of(aggregates.begin(), aggregates.end(), [&](const auto& aggregate) {
+  std::erase_if(aggregates, [](const auto& aggregate) { return aggregate.second.size() < 2; });
+  return !aggregates.empty() && std::none_of(aggregates.begin(), aggregates.end(), [&](const auto& aggregate) {
     const std::vector<int>& members = aggregate.second;
     const bool there = std::all_of(members.begin(), members.end(), [&](int cell) { return now.has(cell); });
-    return members.size() > 1 && there && together(now, members, false);
+    return there && together(now, members, false);
   });
 }
 

@@ -35,10 +35,10 @@ class RheologyHistory {
   ///                      outline (as many as fit into the second half, one if there is one at all; turns 0: over the
   ///                      second half)
   [[nodiscard]] nlohmann::json stages() const;
-  /// Whether the present stage has been steady for so long that the mean of a column is known so well.
-  [[nodiscard]] bool knows(std::string_view column, double standard_error) const;
-  /// Whether no aggregate of two or more cells with which the present stage began is in one piece.
-  [[nodiscard]] bool parted() const;
+  /// Whether a stage, if it is the present one, has been steady for so long that the mean of a column is known so well.
+  [[nodiscard]] bool knows(int stage, std::string_view column, double standard_error) const;
+  /// Whether a stage, if it is the present one, began with aggregates of two or more cells, and none is in one piece.
+  [[nodiscard]] bool parted(int stage) const;
   /// Whether what it remembers has a value for each column that has means: one of another version may not.
   [[nodiscard]] bool fits() const;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(RheologyHistory, stages_, stage_, start_strain_, start_time_)

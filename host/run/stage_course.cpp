@@ -30,8 +30,9 @@ Ending StageCourse::by_outputs(const core::AnySolver<D>& solver) const {
   const scene::Stage& stage = *setting().stage;
   if (!stage.until_parted && stage.until_mean.empty()) return Ending::none;
   // The first rank alone has the outputs.
-  const bool found = stage.until_parted ? state_.rheology.parted()
-                                        : state_.rheology.knows(stage.until_mean, stage.until_standard_error);
+  const bool found = stage.until_parted
+                         ? state_.rheology.parted(state_.stage)
+                         : state_.rheology.knows(state_.stage, stage.until_mean, stage.until_standard_error);
   if (core::of_first(solver.ranks(), found ? 1.0 : 0.0) == 0) return Ending::none;
   return stage.until_parted ? Ending::parted : Ending::mean;
 }

@@ -49,7 +49,8 @@ Schedule make_schedule(const StepFeatures& has) {
   add(touch, Task::take_reactions, "interaction", corrected ? Meeting::none : Meeting::all);
   add(corrected && touch, Task::complete_forces, "corrections", Meeting::all);
   add(touch && ranks, Task::send_forces, "ranks", Meeting::none);
-  add(cells, Task::set_viscosity, mark, Meeting::none);
+  // Marks are set for even shares of the rows, of which workers take others where rows cost more or less.
+  add(cells, Task::set_viscosity, mark, has.uneven_rows ? Meeting::all : Meeting::none);
   add(ghosts, Task::receive_forces, "ranks", Meeting::all);
   schedule.rows = schedule.steps.size();
   add(cells, Task::clear_force, "spread", Meeting::none);

@@ -66,6 +66,8 @@ struct StepFeatures {
   bool changing_drive = false;
   /// What acts on cells from outside does.
   bool changing_forces = false;
+  /// Workers share the rows of the lattice by what they cost.
+  bool uneven_rows = false;
   /// Other ranks hold other blocks and own other cells.
   bool ranks = false;
 };

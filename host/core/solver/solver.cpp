@@ -150,6 +150,7 @@ void Solver<T, Set>::make_passes() {
                         .moving_frame = setup_.follow_cells,
                         .changing_drive = setup_.oscillation.any() || flow_control_.has_value(),
                         .changing_forces = cell_tasks_ != nullptr && !setup_.external.pulls.empty(),
+                        .uneven_rows = !fluid_.fluid_below().empty(),
                         .ranks = ranks};
   if (cell_tasks_) cell_tasks_->describe(features);
   const Schedule schedule = make_schedule(features);

@@ -15,7 +15,8 @@ function meanOf(run, name) {
   const known = stage.statistics?.[name], last = run.series?.[name]?.findLast(v => v !== null);
   if (typeof bar?.error === "number") return {value: bar.value ?? stage.means[name].mean, error: bar.error, about: "mean of the stage's second half, ± its measured error"};
   if (typeof known?.mean === "number") return {value: known.mean, error: known.bar_95, about: `mean of stage ${stage.stage} from ${format(known.from_s, 3)} s on, ± its bar of 95 %, which knows chance and not the lattice`};
-  return typeof last === "number" ? {value: last, error: null, about: `at the end; no mean: ${known?.verdict ?? "too short"}`} : null;
+  const why = `no mean: ${known?.verdict ?? "too short"}`;
+  return typeof last === "number" ? {value: last, error: null, about: `at the end; ${why}`} : {value: stage.means[name].mean, error: null, about: `over the stage's second half; ${why}`};
 }
 
 /// A value with as many digits as its error, rounded up as the terminal does, has a meaning for: "0.347 ± 0.005"; without an

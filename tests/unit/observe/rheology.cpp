@@ -111,25 +111,27 @@ TEST_CASE("a stage says what it knows of a mean, in its own time, and whether it
     s.relative_viscosity = value;
     history.follow(s);
   };
-  for (int k = 0; k < 5; ++k) follow(0, k, 7, {0, 0, 2});
-  CHECK_FALSE(history.parted());
-  CHECK_FALSE(history.knows("relative_viscosity", 1e9));                                 // too few
+  for (int k = 0; k < 30; ++k) follow(0, 0.1 * k, 7, {0, 0, k < 29 ? 2 : 0});
+  CHECK_FALSE(history.parted(0));
+  CHECK(history.knows(0, "relative_viscosity", 1e-9));                                   // all alike
+  CHECK_FALSE(history.knows(1, "relative_viscosity", 1e9));                              // the next stage has not begun
   const auto noise = [](int k) { return std::fmod(k * std::numbers::phi, 1.0) - 0.5; };  // evenly spread, uncorrelated
-  for (int k = 0; k < 400; ++k) follow(1, 5 + 0.5 * k, 2 + noise(k), {0, 0, k < 399 ? 0 : 2});
+  for (int k = 0; k < 400; ++k) follow(1, 3 + 0.5 * k, 2 + noise(k), {0, 0, 0});
   const auto known = history.stages()[1]["statistics"]["relative_viscosity"];
   CHECK(known["verdict"] == "steady");
   CHECK(known["mean"].get<double>() == Approx(2).margin(0.02));
   CHECK(known["from_s"].get<double>() < 100);
-  CHECK(history.knows("relative_viscosity", 1.001 * known["standard_error"].get<double>()));
-  CHECK_FALSE(history.knows("relative_viscosity", 0.999 * known["standard_error"].get<double>()));
-  CHECK_FALSE(history.knows("flow_rate_m2_per_s", 1e9));  // it has no value
+  CHECK(history.knows(1, "relative_viscosity", 1.001 * known["standard_error"].get<double>()));
+  CHECK_FALSE(history.knows(1, "relative_viscosity", 0.999 * known["standard_error"].get<double>()));
+  CHECK_FALSE(history.knows(1, "flow_rate_m2_per_s", 1e9));  // it has no value
   CHECK_FALSE(history.stages()[1]["statistics"].contains("flow_rate_m2_per_s"));
-  CHECK_FALSE(history.parted());  // the stage began with {0, 1} and 2 alone
+  CHECK_FALSE(history.parted(1));
   follow(1, 300, 2, {0, 1, 1});
-  CHECK(history.parted());
+  CHECK(history.parted(1));
+  CHECK_FALSE(history.parted(2));
   RheologyHistory single;
   for (const double time : {0.0, 1.0}) single.follow(at(0, time, time, {0, 1}));
-  CHECK_FALSE(single.parted());  // nothing was together
+  CHECK_FALSE(single.parted(0));  // nothing was together
 }
 
 TEST_CASE("rates of tank treading and tumbling are those of the last whole turns of the outline") {

@@ -1,12 +1,10 @@
 #include "observe/statistics.hpp"
 
-#include <catch2/catch_approx.hpp>
-#include <catch2/catch_test_macros.hpp>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <random>
 
-using Catch::Approx;
 using rouleau::Column;
 using rouleau::observe::Statistics;
 
