@@ -22,6 +22,7 @@ LEFT_OUT = [
     (r"paraview\b|xdg-open\b", "wants a screen; tests/paraview opens the same file"),
     (r"python3 tests/mutants/score\.py", "a quarter of an hour; ctest runs a sample of it, scripts/test --full all"),
     (r"python3 bench/(idle_features|python_stepping)\.py", "needs valgrind; scripts/test --full runs it"),
+    (r"python3 bench/passes\.py", "needs valgrind, and minutes"),
     (r"python3 bench/ranks\.py", "minutes, and figures of an idle machine"),
     (r"build/release/bin/rouleau-bench\b", "measures time for a minute"),
     (r"build/release/bin/physics\b", "the physics tests, run by ctest"),

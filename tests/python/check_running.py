@@ -240,13 +240,11 @@ class A_sweep(In_a_folder):
         for _, row in table.iterrows():
             run = rouleau.open(row["directory"])
             self.assertEqual((run.scene.stages[1].shear_rate, run.scene.numerics.tau), (row["shear_rate"], row["tau"]))
-            mean = run.stage("shear").mean("relative_viscosity")
-            told = run.summary.rheology[-1].means["relative_viscosity"]
-            found = (row["relative_viscosity"], row["relative_viscosity_error"])
-            self.assertEqual(found, (told["mean"], told["error"]))
-            for value, own in zip(found, mean):  # the same rule, added up in another order
-                self.assertAlmostEqual(value, own, delta=1e-12 * abs(mean.value))
-            self.assertGreater(mean.error, 0)
+            # So short a run has no steady part: a plain mean, of which no error is known.
+            told = run.summary.rheology[-1]
+            self.assertIsNone(told.statistics["relative_viscosity"]["mean"])
+            self.assertAlmostEqual(row["relative_viscosity"] / told.means["relative_viscosity"]["mean"], 1, delta=1e-12)
+            self.assertTrue(numpy.isnan(row["relative_viscosity_error"]))
 
     def test_runs_nothing_twice_and_what_is_new(self):
         over = {"/stages/1/shear_rate": ["10 1/s"]}
@@ -368,8 +366,7 @@ class A_sweep_with_seeds(In_a_folder):
             values, errors = zip(*(run.results.loc["relative_viscosity", ["value", "error"]] for run in runs))
             self.assertAlmostEqual(row["relative_viscosity"], numpy.mean(values), delta=1e-12)
             self.assertAlmostEqual(row["relative_viscosity_error_between"], numpy.std(values, ddof=1) / 3 ** 0.5, delta=1e-12)
-            self.assertAlmostEqual(row["relative_viscosity_error_within"], numpy.sqrt(numpy.sum(numpy.square(errors))) / 3, delta=1e-12)
-            self.assertGreater(row["relative_viscosity_error_between"], row["relative_viscosity_error_within"])
+            self.assertTrue(numpy.isnan(errors).all() and numpy.isnan(row["relative_viscosity_error_within"]))  # too short for any
             self.assertEqual(row["relative_viscosity_error"], row["relative_viscosity_error_between"])
             self.assertAlmostEqual(row["relative_viscosity_bar95"], 4.302653 * row["relative_viscosity_error"], delta=1e-6)
             self.assertTrue(numpy.isnan(row["deformation_error_within"]))

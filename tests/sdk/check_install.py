@@ -167,8 +167,9 @@ class The_document_tells_what_is_so(Case):
 
         sentence = " ".join(re.search(r"Lines of source.*?`bgk`\)", self.TEXT, re.DOTALL).group(0).split())
         kinds = ("interaction", "membrane", "collision")
+        templates = [str(lines(SDK / "template" / kind / "model-name.cpp")) for kind in kinds]
+        self.assertIn(f"| template | {' | '.join(templates)} |", sentence)
         for kind in kinds:
-            self.assertIn(f" {lines(SDK / 'template' / kind / 'model-name.cpp')} ({kind})", sentence)
             shipped = {f.stem: lines(f) for f in (SOURCE / "plugins" / kind).glob("*/*.cpp")}
             named = [(int(n), name) for n, name in re.findall(r"(\d+) \(`([a-z-]+)`\)", sentence) if name in shipped]
             self.assertEqual([(n, shipped[name]) for n, name in named], [(min(shipped.values()),) * 2])

@@ -109,6 +109,7 @@ TEST_CASE("a stage says what it knows of a mean, in its own time, and whether it
   const auto follow = [&](int stage, double time, double value, std::vector<int> labels) {
     Snapshot s = at(stage, time, time, std::move(labels));
     s.relative_viscosity = value;
+    s.flow_rate = std::nan("");
     history.follow(s);
   };
   for (int k = 0; k < 30; ++k) follow(0, 0.1 * k, 7, {0, 0, k < 29 ? 2 : 0});
