@@ -342,7 +342,7 @@ BLOCKS = [
     ("docs/trust.md", '{\n  "collection": 1', index_of_a_collection),
     ("docs/testing.md", "// Locks:", fuzz_target),
     ("docs/walls.md", '"walls": { "within"', "of scenes/couette-cylinders.json"),
-    ("docs/walls.md", '"output": {', other_settings),
+    ("docs/walls.md", '"output": {', "needs walls of a shape; tests/python/check_reading.py reads such a run"),
     ("docs/walls.md", '"domain": {\n', walls_of_any_shape),
     ("docs/walls.md", '"domain": { "size": ["60 um", "20 um"],', walls_of_any_shape),
     ("docs/walls.md", '"domain": { "size": ["60 um", "16 um"],', walls_of_any_shape),
