@@ -71,7 +71,7 @@ FORKED = changed(FED, domain__size=["40 um", "16 um"], domain__nodes=[80, 32],
                  cell_types={"disc": changed(DISC, membrane__0__parameters__shear_modulus="3e-2 dyn/cm")}, cells=[],
                  stages__0__duration="0.04 s", output__cells__seconds="1 ms",
                  interactions=[{"between": ["disc", other], **REPULSION} for other in ("disc", "wall")])
-DENSE_HEMATOCRIT, DENSE_SECONDS = 0.4, 0.1
+DENSE_HEMATOCRIT, DENSE_SECONDS = 0.4, 0.06
 DENSE = changed(FED, domain__size=["40 um", "16 um"], domain__nodes=[120, 48], cells=[],
                 domain__x=ends({**VELOCITY, "cells": {"type": "rbc", "hematocrit": DENSE_HEMATOCRIT}}),
                 stages__0__duration=f"{DENSE_SECONDS} s", output__cells__seconds="1 ms")
@@ -320,17 +320,17 @@ class Openings(unittest.TestCase):
     def test_behind_a_pressure_cells_come_by_the_flow_that_is_measured(self):
         pressure = f"{12 * VISCOSITY * MEAN * 40e-6 / FED_HEIGHT ** 2!r} Pa"
         scene = changed(FORKED, domain__x=ends({"pressure": pressure, "cells": {"type": "disc", "hematocrit": 0.3}}),
-                        domain__obstacles=[], stages__0__duration="0.1 s")
+                        domain__obstacles=[], stages__0__duration="0.06 s")
         last = self.run_scene(scene, "by-pressure", "--max-steps", "9000")[-1]
         last = self.run_scene(scene, "by-pressure", "--resume")[-1]
         traffic = json.loads((self.folder / "by-pressure/summary.json").read_text())["cell_traffic"]
         inlet = traffic["stages"][0]["ends"][0]
         self.assertEqual(traffic["cells_in"], traffic["cells_due"])
-        self.assertGreater(last["cells_in"], 25)
+        self.assertGreater(last["cells_in"], 15)
         self.assertAlmostEqual(inlet["volume_in"], 0.3 * inlet["flow_in"], delta=inlet["volume_in"] / inlet["cells_in"])
         flows = [row["inlet_flow_m2_per_s"] for row in self.rows("by-pressure")]  # every millisecond
         self.assertAlmostEqual(inlet["flow_in"] / (1e-3 * (sum(flows) - flows[-1] / 2)), 1, delta=0.02)
-        self.run_scene(scene, "by-pressure-whole", "--threads", "2", **({"ranks": 2} if HAS_RANKS else {}))
+        self.run_scene(scene, "by-pressure-whole", "--threads", "2")
         self.assertEqual(differences(self.folder / "by-pressure", self.folder / "by-pressure-whole"), [])
 
     @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
@@ -339,7 +339,7 @@ class Openings(unittest.TestCase):
         traffic = json.loads((self.folder / "dense/summary.json").read_text())["cell_traffic"]
         inlet = traffic["stages"][0]["ends"][0]
         self.assertEqual(traffic["cells_in"], traffic["cells_due"])
-        self.assertGreater(traffic["cells_out"], 20)
+        self.assertGreater(traffic["cells_out"], 5)
         # The whole number of cells is off by half a one.
         flow = MEAN * FED_HEIGHT * DENSE_SECONDS
         self.assertAlmostEqual(inlet["volume_in"] / flow / DENSE_HEMATOCRIT, 1, delta=0.02)
