@@ -24,7 +24,7 @@ OF_ALL_CELLS = {"cells-too-many", "force-beside-no-cell", "gravity-on-nothing", 
                 "random-too-dense"}
 # Cases that a fault in another part may leave open: what they are about is not known then.
 NEEDS = {"field-region": {"domain"}, "length-beyond-box": {"domain"}, "unit-forgotten": {"domain"}, "random": {"domain", "cell_types"},
-         "missing-nodes": {"domain", "numerics"}, "missing-segments": {"numerics"}, "layer-": {"domain"},
+         "missing-nodes": {"domain", "numerics"}, "missing-segments": {"numerics"}, "cell-without-shape": {"numerics"}, "layer-": {"domain"},
          "layers-with": {"fluid", "cells", "cell_types", "domain"}, "layers-oscillating": {"fluid", "domain"}, "output-by-strain": {"stages"},
          "cell-type-unknown": {"cell_types"}, "wall-misspelt": {"cell_types"}, "no-cell-types": {"cell_types"}}
 # What others are about stands elsewhere then, or is gone: the key, the flow, the walls. Openings refuse layers and drives that
