@@ -91,6 +91,7 @@ auto Traffic<D>::free_place(int cell, double time) -> std::optional<typename Eng
   if (const auto free = std::find(here.begin(), here.end(), 0.0); free != here.end())
     return std::move(tries[static_cast<std::size_t>(free - here.begin())]);
   std::vector<double> most;
+  most.reserve(tries.size());
   for (auto& attempt : tries) most.push_back(inflow().draw_back(attempt));
   std::vector<double> far = ways(tries, std::move(most));
   for (std::size_t left = tries.size(); left > 0; --left) {

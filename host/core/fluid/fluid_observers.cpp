@@ -341,7 +341,8 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
     }
     state.for_links(i, [&](std::size_t piece, const auto& at) {
       for (const auto& link : state.links->of_piece(piece)) {
-        const int q = link.q, x = link.x;
+        const auto q = link.q;
+        const int x = link.x;
         if (link.plane) add_plane(at.in, link.w, x, -1);  // a wall before it takes all
         const double both = static_cast<double>(link.left) + static_cast<double>(at.in[q][x]);
         for (int k = 0; k < Set::dimension; ++k) {

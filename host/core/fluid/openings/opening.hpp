@@ -22,8 +22,8 @@ using Openings = std::optional<std::array<Opening, 2>>;
 
 /// What goes through the planes of nodes at the two ends, lattice units.
 struct EndFlow {
-  double flow = 0;      ///< along +x: the sum of the nodes' velocities
-  double pressure = 0;  ///< mean of the nodes, above that of density 1
+  double flow = 0;                    ///< along +x: the sum of the nodes' velocities
+  double pressure = 0;                ///< mean of the nodes, above that of density 1
   std::vector<double> of_parts = {};  ///< the flow through each of the end's openings (parts_of_section)
 };
 
