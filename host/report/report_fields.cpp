@@ -126,10 +126,10 @@ class AcrossFlow {
       values.push_back(base64(bytes));
     }
     const auto& [x, y, z] = grid_.first;
-    const int middle = grid_.nx / 2;
+    const std::size_t middle = grid_.nx / 2;
     return {{"ny", fields_.front().nx},
             {"nz", fields_.front().ny},
-            {"x_um", (x + middle * grid_.spacing[0]) * micro},
+            {"x_um", (x + static_cast<double>(middle) * grid_.spacing[0]) * micro},
             {"box_um",
              {(y - grid_.spacing[1] / 2) * micro, (z - grid_.spacing[2] / 2) * micro,
               grid_.spacing[1] * double(grid_.ny) * micro, grid_.spacing[2] * double(grid_.nz) * micro}},
@@ -284,8 +284,8 @@ Json field_data(const std::filesystem::path& frames, const std::vector<std::size
               {"quantities", Json::array()}};
   result["velocity"] = has_velocity ? tracers.to_json() : Json();
   result["across"] = across ? across->to_json() : Json();
-  const int middle = grid.nz / 2;
-  if (grid.nz > 1) result["z_um"] = (grid.first[2] + middle * grid.spacing[2]) * micro;
+  const std::size_t middle = grid.nz / 2;
+  if (grid.nz > 1) result["z_um"] = (grid.first[2] + static_cast<double>(middle) * grid.spacing[2]) * micro;
   if (has_velocity) result["quantities"].push_back(to_json(speeds));
   result["quantities"].push_back(to_json(vorticities));
   return result;
