@@ -18,6 +18,7 @@ void fuzz_target(std::string_view bytes) {
       plugin::Manifest manifest{};
       manifest.file = file.path();
       manifest.id = id;
+      manifest.kind = plugin::ModelKind::collision;
       fuzz::may_refuse([&] { plugin::require_locked(lock, manifest, {"scene.json", "/fluid/collision/model", 1, 1}); });
     }
   });
