@@ -119,8 +119,8 @@ bool rises(Values values, double mean) {
   return found && std::abs(slope) * count > most_rise * std::sqrt(12.0) * found->error;
 }
 
-/// Student's t at 0.975, by bisection of the finite sums of Abramowitz and Stegun, 26.7.3 and 26.7.4. (Boost has it, but
-/// works out constants whenever a program starts, and fails to under valgrind.)
+/// Student's t at 0.975, by bisection of the finite sums of Abramowitz and Stegun, 26.7.3 and 26.7.4. (Boost has it,
+/// but works out constants whenever a program starts, and fails to under valgrind.)
 double student_95(int freedom) {
   if (freedom > 1000) return 1.959964 + 2.3722 / freedom;  // the first term of Fisher's expansion: to 2e-6
   const auto inside = [freedom](double t) {                // probability between -t and t
