@@ -96,6 +96,8 @@ void FluidState<T, Set>::set(const StateOfNode<dimension>& state) {
     const Row row = lattice.row(i);
     const double tau = 1 / rate_of_row(row);
     lattice.for_pieces(i, [&](const RowPiece& piece, std::size_t) {
+      T* slots[velocity_count];
+      for (int q = 0; q < velocity_count; ++q) slots[q] = lattice.slot(q, row, piece.begin);
       for (int x = piece.begin; x < piece.end; ++x) {
         NodeState<dimension> s;
         if constexpr (dimension == 2) {
@@ -117,8 +119,7 @@ void FluidState<T, Set>::set(const StateOfNode<dimension>& state) {
             divergence += s.gradient[(dimension + 1) * k];
           }
           strain -= divergence / 3;
-          lattice.slot(q, row, x)[x] =
-              static_cast<T>(equilibrium(q, s.density, momentum) - 3 * tau * Set::weight[q] * strain);
+          slots[q][x] = static_cast<T>(equilibrium(q, s.density, momentum) - 3 * tau * Set::weight[q] * strain);
         }
       }
     });
