@@ -79,48 +79,9 @@ class RowPieces {
   };
 
   /// The runs of nodes of a row, in or around the block, that are in a piece or next to one.
-  void add_runs(const Row& row) {
-    std::vector<Run> near;
-    Box<D> beside{};
-    beside.end[0] = 1;
-    for (int k = 1; k < D; ++k) {
-      beside.begin[k] = std::max(row[k - 1] - 1, 0);
-      beside.end[k] = std::min(row[k - 1] + 2, block_.size(k));
-    }
-    for (int j = 0; j < row_count(beside); ++j) {
-      int i = 0;
-      const Row from_first = row_of(beside, j);
-      for (int k = D - 1; k > 0; --k) i = i * block_.size(k) + beside.begin[k] + from_first[k - 1];
-      for (std::size_t n = first_piece(i); n < first_piece(i + 1); ++n)
-        near.push_back({pieces_[n].begin - 1, pieces_[n].end + 1, 0});
-    }
-    std::sort(near.begin(), near.end(), [](const Run& a, const Run& b) { return a.begin < b.begin; });
-    const std::size_t first = runs_.size();
-    for (const Run& run : near) {
-      if (runs_.size() > first && run.begin <= runs_.back().end) {
-        runs_.back().end = std::max(runs_.back().end, run.end);
-      } else {
-        runs_.push_back(run);
-      }
-    }
-    for (std::size_t n = first; n < runs_.size(); ++n) {
-      runs_[n].start = count_ - runs_[n].begin;
-      count_ += runs_[n].end - runs_[n].begin;
-    }
-  }
-  [[nodiscard]] std::size_t number_of(const Row& row) const {
-    std::size_t number = 0;
-    for (int k = D - 1; k > 0; --k)
-      number = number * static_cast<std::size_t>(block_.size(k) + 2) + static_cast<std::size_t>(row[k - 1] + 1);
-    return number;
-  }
-  [[nodiscard]] const Run* find(int x, const Row& row) const {
-    const std::size_t number = number_of(row);
-    for (std::size_t n = first_run_[number]; n < first_run_[number + 1]; ++n) {
-      if (x < runs_[n].end) return x < runs_[n].begin ? nullptr : &runs_[n];
-    }
-    return nullptr;
-  }
+  void add_runs(const Row& row);
+  [[nodiscard]] std::size_t number_of(const Row& row) const;
+  [[nodiscard]] const Run* find(int x, const Row& row) const;
 
   Box<D> block_{};
   std::ptrdiff_t count_ = 0;
@@ -128,5 +89,8 @@ class RowPieces {
   std::vector<Run> runs_;
   std::vector<std::size_t> first_piece_, first_run_;  ///< of each row, and the end
 };
+
+extern template class RowPieces<2>;
+extern template class RowPieces<3>;
 
 }  // namespace rouleau::core

@@ -75,11 +75,15 @@ void copy_across(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& 
   });
 }
 
-/// From node to node of a row, if both are there.
-template <class T, class Set>
-void copy_node(Lattice<T, Set>& lattice, int q, const typename Lattice<T, Set>::Row& row, int from, int to) {
-  if (lattice.holds(from, row) && lattice.holds(to, row))
-    lattice.slot(q, row, to)[to] = lattice.slot(q, row, from)[from];
+/// From node to node of a row, if both are there: the slots with this sign along x that are wanted.
+template <class T, class Set, class Wanted>
+void copy_node(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row, int sign, int from, int to,
+               Wanted wanted) {
+  if (!lattice.holds(from, row) || !lattice.holds(to, row)) return;
+  const std::ptrdiff_t source = lattice.offset(from, row), target = lattice.offset(to, row);
+  for_slots<Set>(sign, [&](int q) {
+    if (wanted(q)) lattice.origin(q)[target] = lattice.origin(q)[source];
+  });
 }
 
 }  // namespace
@@ -88,8 +92,9 @@ template <class T, class Set>
 void send_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row) {
   const int nx = lattice.size(0);
   if (lattice.wraps(0)) {
-    for_slots<Set>(+1, [&](int q) { copy_node(lattice, q, row, 0, nx); });
-    for_slots<Set>(-1, [&](int q) { copy_node(lattice, q, row, nx - 1, -1); });
+    const auto all = [](int) { return true; };
+    copy_node(lattice, row, +1, 0, nx, all);
+    copy_node(lattice, row, -1, nx - 1, -1, all);
   }
   copy_across(lattice, row, true);
 }
@@ -99,12 +104,9 @@ void receive_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& 
   const int nx = lattice.size(0);
   copy_across(lattice, row, false);
   if (!lattice.wraps(0)) return;
-  for_slots<Set>(+1, [&](int q) {
-    if (comes_along(lattice, q, row)) copy_node(lattice, q, row, nx, 0);
-  });
-  for_slots<Set>(-1, [&](int q) {
-    if (comes_along(lattice, q, row)) copy_node(lattice, q, row, -1, nx - 1);
-  });
+  const auto comes = [&](int q) { return comes_along(lattice, q, row); };
+  copy_node(lattice, row, +1, nx, 0, comes);
+  copy_node(lattice, row, -1, -1, nx - 1, comes);
 }
 
 namespace {
