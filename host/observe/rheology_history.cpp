@@ -54,6 +54,20 @@ bool together(const Instant& instant, const std::vector<int>& members, bool any)
   return any ? labels.size() < members.size() : labels.size() == 1;
 }
 
+/// Of two or more cells, by label.
+template <class Instant>
+std::map<int, std::vector<int>> aggregates_of(const Instant& instant) {
+  std::map<int, std::vector<int>> aggregates;
+  for (std::size_t i = 0; i < instant.cell.size(); ++i) aggregates[instant.label[i]].push_back(instant.cell[i]);
+  std::erase_if(aggregates, [](const auto& aggregate) { return aggregate.second.size() < 2; });
+  return aggregates;
+}
+
+template <class Instant>
+bool all_there(const Instant& instant, const std::vector<int>& cells) {
+  return std::all_of(cells.begin(), cells.end(), [&](int cell) { return instant.has(cell); });
+}
+
 /// A moment between two instants, and the angles there.
 struct Turned {
   double strain, time, marker, axis;
@@ -143,31 +157,19 @@ bool RheologyHistory::knows(int stage, std::string_view column, double standard_
 
 bool RheologyHistory::parted(int stage) const {
   if (stage_ != stage) return false;
-  const Instant& start = stages_.back().instants.front();
   const Instant& now = stages_.back().instants.back();
-  std::map<int, std::vector<int>> aggregates;
-  for (std::size_t i = 0; i < start.cell.size(); ++i) aggregates[start.label[i]].push_back(start.cell[i]);
-  std::erase_if(aggregates, [](const auto& aggregate) { return aggregate.second.size() < 2; });
+  const auto aggregates = aggregates_of(stages_.back().instants.front());
   return !aggregates.empty() && std::none_of(aggregates.begin(), aggregates.end(), [&](const auto& aggregate) {
-    const std::vector<int>& members = aggregate.second;
-    const bool there = std::all_of(members.begin(), members.end(), [&](int cell) { return now.has(cell); });
-    return there && together(now, members, false);
+    return all_there(now, aggregate.second) && together(now, aggregate.second, false);
   });
 }
 
 Json RheologyHistory::dissociation(const StageHistory& stage) {
   Json result = Json::array();
-  std::map<int, std::vector<int>> aggregates;
-  const Instant& start = stage.instants.front();
-  for (std::size_t i = 0; i < start.cell.size(); ++i) aggregates[start.label[i]].push_back(start.cell[i]);
-  for (const auto& [label, members] : aggregates) {
-    if (members.size() < 2) continue;
+  for (const auto& [label, members] : aggregates_of(stage.instants.front())) {
     const auto since = [&, &cells = members](bool any) -> Json {
-      const auto all_there = [&](const Instant& instant) {
-        return std::all_of(cells.begin(), cells.end(), [&](int cell) { return instant.has(cell); });
-      };
       std::size_t end = 1;
-      while (end < stage.instants.size() && all_there(stage.instants[end])) ++end;
+      while (end < stage.instants.size() && all_there(stage.instants[end], cells)) ++end;
       std::size_t i = end;
       while (i > 0 && !together(stage.instants[i - 1], cells, any)) --i;
       if (i == end) return nullptr;

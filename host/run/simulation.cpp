@@ -242,8 +242,8 @@ class Simulation final : StepHooks {
     const bool fields_due = !written && !scene().output.fields.never() && stage_->fields.due(step);
     const bool check_due = step % scene().checks.every_steps == 0;
     const bool last = stage_->due != Ending::none;
-    if (cells_due || fields_due || check_due || last) {
-      const bool output_due = cells_due || fields_due || last;
+    const bool output_due = cells_due || fields_due || last;
+    if (output_due || check_due) {
       const core::FluidMeasures<D> fluid = state_.observer.measure_fluid(solver().fluid(), setting(), output_due);
       if (fails(monitor::check_state(state_.observer, solver(), fluid, setting(), plan_))) return false;
       if (check_due && ranks().several()) balance_.look(ranks(), computed_s(), step, options_.cut_at_checks);
@@ -256,7 +256,7 @@ class Simulation final : StepHooks {
       if (ranks().first()) progress_.update(progress());
       state_.costs.add("observe and check", seconds_since(start), 1);
     }
-    course_.look(solver());
+    course_.look(solver(), output_due);
     const long check = (step / scene().checks.every_steps + 1) * scene().checks.every_steps;
     long next = std::min(
         {stage_->cells.next(step), stage_->fields.next(step), check, course_.next(), balance_.next(), traffic_.next()});

@@ -46,8 +46,7 @@ Ending StageCourse::ending(const core::AnySolver<D>& solver) const {
       return Ending::at_rest;
   }
   if (stage.until_equilibrium && state_.equilibrium.reached()) return Ending::equilibrium;
-  if (state_.stage_step > 0)
-    if (const Ending found = by_outputs(solver); found != Ending::none) return found;
+  if (const Ending found = by_outputs_ ? *by_outputs_ : by_outputs(solver); found != Ending::none) return found;
   if (state_.stage_step < setting().max_steps) return Ending::none;
   const bool by_strain =
       stage.strain && (!stage.duration || *stage.strain / std::abs(stage.shear_rate) <= *stage.duration);
@@ -64,9 +63,9 @@ Ending StageCourse::end(const core::AnySolver<D>& solver) {
 }
 
 template <int D>
-void StageCourse::look(core::AnySolver<D>& solver) {
+void StageCourse::look(core::AnySolver<D>& solver, bool has_outputs) {
   const scene::StageSetting& setting = this->setting();
-  by_outputs_ = by_outputs(solver);
+  if (has_outputs || !by_outputs_) by_outputs_ = by_outputs(solver);
   if (!setting.stage->until_equilibrium || state_.stage_step < state_.equilibrium.next(energy_window())) return;
   const observe::CellEnergy energy = observe::cell_energy(solver);
   if (!energy.unknown.empty()) {
@@ -81,16 +80,16 @@ void StageCourse::look(core::AnySolver<D>& solver) {
 template void StageCourse::begin(const core::AnySolver<2>&);
 template Ending StageCourse::ending(const core::AnySolver<2>&) const;
 template Ending StageCourse::end(const core::AnySolver<2>&);
-template void StageCourse::look(core::AnySolver<2>&);
+template void StageCourse::look(core::AnySolver<2>&, bool);
 template void StageCourse::begin(const core::AnySolver<3>&);
 template Ending StageCourse::ending(const core::AnySolver<3>&) const;
 template Ending StageCourse::end(const core::AnySolver<3>&);
-template void StageCourse::look(core::AnySolver<3>&);
+template void StageCourse::look(core::AnySolver<3>&, bool);
 
 long StageCourse::next() const {
   const scene::Stage& stage = *setting().stage;
   long next = setting().max_steps;
-  if (by_outputs_ != Ending::none) next = std::min(next, state_.stage_step + 1);
+  if (by_outputs_ && *by_outputs_ != Ending::none) next = std::min(next, state_.stage_step + 1);
   if (stage.until_at_rest) next = std::min(next, state_.rest_watch.end(rest_window()));
   if (stage.until_equilibrium) {
     const bool reached = state_.equilibrium.reached();

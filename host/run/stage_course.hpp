@@ -1,6 +1,8 @@
 // The course of a stage, step by step: what has been taken of it, and when its scene ends it.
 #pragma once
 
+#include <optional>
+
 #include "core/solver/any_solver.hpp"
 #include "plan/plan.hpp"
 #include "run_state.hpp"
@@ -32,10 +34,10 @@ class StageCourse {
   /// The same, before the forces of a step: where a window of rest is over the next one begins.
   template <int D>
   Ending end(const core::AnySolver<D>& solver);
-  /// Forces computed, and outputs of this step written: what they say, and the energy of the cells, where the stage
-  /// ends by these and a window is over. Throws Error(bad_input) where the energy is unknown.
+  /// Forces computed, and outputs of this step, if it has some, written: what they say, and the energy of the cells,
+  /// where the stage ends by these and a window is over. Throws Error(bad_input) where the energy is unknown.
   template <int D>
-  void look(core::AnySolver<D>& solver);
+  void look(core::AnySolver<D>& solver, bool has_outputs);
   /// The next step, after look(), at which the stage may end.
   [[nodiscard]] long next() const;
 
@@ -50,7 +52,7 @@ class StageCourse {
  private:
   /// Whether a window of rest is over.
   [[nodiscard]] bool compares_positions() const;
-  /// What outputs that have been written end the stage by: mean, parted or none.
+  /// What the outputs written so far end the stage by: mean, parted or none.
   template <int D>
   [[nodiscard]] Ending by_outputs(const core::AnySolver<D>& solver) const;
   [[nodiscard]] long steps_of(double seconds) const;
@@ -59,7 +61,7 @@ class StageCourse {
 
   const plan::Plan& plan_;
   RunState& state_;
-  Ending by_outputs_ = Ending::none;  ///< at the last look
+  std::optional<Ending> by_outputs_;  ///< since the last output; none: not looked for yet
 };
 
 }  // namespace rouleau::run

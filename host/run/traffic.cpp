@@ -134,12 +134,11 @@ void Traffic<D>::measure() {
 }
 
 template <int D>
-int Traffic<D>::opening_at(int end, const core::Cells<D>& cells, const core::CellRange& cell) const {
+int Traffic<D>::opening_at(int end, const core::Cells<D>& cells, const core::CellRange& cell) {
   const core::BasicSolverSetup<D>& setup = engine_.solver().setup();
   const core::Domain<D>& domain = setup.domain;
-  const auto is_fluid = [&](const auto& node) { return !setup.solid || !setup.solid->at(node); };
-  const std::vector<int> openings =
-      core::parts_of_section<D>(domain, end == lower_end ? 0 : domain.size[0] - 1, is_fluid);
+  if (parts_of_ends_[0].empty()) parts_of_ends_ = core::parts_of_ends(domain, setup.solid.get());
+  const std::vector<int>& openings = parts_of_ends_[end];
   for (int i = cell.first; i < cell.end(); ++i) {
     int row = 0;
     for (int k = D - 1; k > 0 && row >= 0; --k) {

@@ -1,6 +1,7 @@
 // Cells that come in through an inlet and leave through an outlet, while a scene is stepped.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -47,7 +48,7 @@ class Traffic {
   [[nodiscard]] bool is_open() const { return observe::has_traffic(*plan_.scene); }
   [[nodiscard]] const Inflow<D>& inflow();
   /// Which opening of an end a cell is in front of: its first node that is in front of any.
-  [[nodiscard]] int opening_at(int end, const core::Cells<D>& cells, const core::CellRange& cell) const;
+  [[nodiscard]] int opening_at(int end, const core::Cells<D>& cells, const core::CellRange& cell);
   void find_gone();
   void find_come(double time);
   /// The first of these places that is free on all ranks; none: none is.
@@ -61,6 +62,7 @@ class Traffic {
   std::vector<double> content_;      ///< m3, or m2, of a cell of each type
   std::optional<Inflow<D>> inflow_;  ///< made when first asked for
   int of_stage_ = 0;
+  std::array<std::vector<int>, 2> parts_of_ends_;  ///< core::parts_of_ends; empty until first asked for
   int looks_in_vain_ = 0;  ///< one after another, in which no place was tried: all were too near a wall
   Change change_;
 };

@@ -85,8 +85,7 @@ std::vector<OpenPart> parts_at(const Scene& scene, int end) {
   const double spacing = lattice_spacing(scene);
   std::vector<OpenPart> found;
   std::vector<Vector> places;  // of all nodes, row after row
-  const int column = end == 0 ? 0 : domain.size[0] - 1;
-  const std::vector<int> parts = core::parts_of_section<D>(domain, column, [&](const std::array<int, D>& node) {
+  const std::vector<int> parts = core::parts_of_section<D>(domain, end, [&](const std::array<int, D>& node) {
     core::Vec<D> place;
     Vector at = Vector::filled(D, end == 0 ? 0 : scene.domain.size[0]);
     for (int k = 0; k < D; ++k) place[k] = node[k];

@@ -212,7 +212,7 @@ class SimulationOf final : public Simulation, run::StepHooks {
       if (auto failure = monitor::check_state(state_.observer, solver, stage(), plan_)) fail(std::move(*failure));
     }
     ending_ = due_ending_;
-    course_.look(solver);
+    course_.look(solver, false);
     stepper_.attend_next(std::min({(step / every + 1) * every, course_.next(), traffic_.next()}));
     return ending_ == run::Ending::none;
   }

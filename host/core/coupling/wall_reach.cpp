@@ -76,15 +76,7 @@ std::vector<char> WallReach<D>::grown(std::vector<char> marks, bool down) const 
 
 template <int D>
 double WallReach<D>::factor(const Stencil& stencil) const {
-  double all = 0, of_fluid = 0;
-  for_rows(stencil, [&](const Node&, std::size_t place, double weight) {
-    double row = 0, row_of_fluid = 0;
-    for (std::size_t x = 0; x < static_cast<std::size_t>(points_); ++x) {
-      const double moment = stencil[0].weight[x] * distance_[place + x];
-      row += moment, row_of_fluid += solid_[place + x] != 0 ? 0 : moment;
-    }
-    all += weight * row, of_fluid += weight * row_of_fluid;
-  });
+  const auto [all, of_fluid] = sums(stencil, [this](std::size_t place) { return distance_[place]; });
   if (!(of_fluid > 0)) return 1;
   constexpr double most = 1.5;  // with weights that are negative in the solid
   return std::min(std::abs(all) / of_fluid, all > 0 ? most : 1);
@@ -92,11 +84,7 @@ double WallReach<D>::factor(const Stencil& stencil) const {
 
 template <int D>
 Vec<D> WallReach<D>::carried(const Stencil& stencil, double factor) const {
-  double of_fluid = 0;
-  for_rows(stencil, [&](const Node&, std::size_t place, double weight) {
-    for (std::size_t x = 0; x < static_cast<std::size_t>(points_); ++x)
-      of_fluid += solid_[place + x] != 0 ? 0 : weight * stencil[0].weight[x];
-  });
+  const double of_fluid = sums(stencil, [](std::size_t) { return 1; }).second;
   Vec<D> middle = Vec<D>::Zero();
   for (int k = 0; k < D; ++k) {
     for (int i = 0; i < points_; ++i)

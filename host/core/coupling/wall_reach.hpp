@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "core/domain/domain.hpp"
@@ -78,6 +79,20 @@ class WallReach {
       }
       function(row, static_cast<std::size_t>(place), weight);
     }
+  }
+  /// Sums over a stencil of weights times value(place): of all nodes, and of those of the fluid.
+  template <class Value>
+  [[nodiscard]] std::pair<double, double> sums(const Stencil& stencil, Value value) const {
+    double all = 0, of_fluid = 0;
+    for_rows(stencil, [&](const Node&, std::size_t place, double weight) {
+      double row = 0, row_of_fluid = 0;
+      for (std::size_t x = 0; x < static_cast<std::size_t>(points_); ++x) {
+        const double moment = stencil[0].weight[x] * value(place + x);
+        row += moment, row_of_fluid += solid_[place + x] != 0 ? 0 : moment;
+      }
+      all += weight * row, of_fluid += weight * row_of_fluid;
+    });
+    return {all, of_fluid};
   }
   /// `marks` of the places from which so many steps up, or down, along every axis one is marked.
   [[nodiscard]] std::vector<char> grown(std::vector<char> marks, bool down) const;

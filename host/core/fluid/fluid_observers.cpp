@@ -8,7 +8,6 @@
 
 #include "core/domain/exact_sum.hpp"
 #include "energetics.hpp"
-#include "openings/section.hpp"
 #include "walls.hpp"
 
 namespace rouleau::core {
@@ -273,11 +272,9 @@ std::vector<double> row_velocities_without_membranes(const FluidState<T, Set>& s
 template <class T, class Set>
 std::array<EndFlow, 2> end_flows(const FluidState<T, Set>& state, const Ranks<Set::dimension>& ranks) {
   const Domain<Set::dimension>& domain = state.setting.domain;
-  const auto is_fluid = [&](const auto& node) { return !state.setting.solid || !state.setting.solid->at(node); };
   std::array<EndFlow, 2> flows;
   for (const int end : {0, 1}) {
-    const std::vector<int> parts =
-        parts_of_section<Set::dimension>(domain, end == 0 ? 0 : domain.size[0] - 1, is_fluid);
+    const std::vector<int>& parts = state.parts_of_ends[end];
     const auto count = static_cast<std::size_t>(1 + *std::max_element(parts.begin(), parts.end()));
     std::vector<ExactSum> sums(3 + count);  // velocities, densities, nodes; velocities in each part
     const int x = end == 0 ? 0 : state.nx() - 1;

@@ -5,6 +5,7 @@
 
 #include "layers.hpp"
 #include "moving_frame.hpp"
+#include "openings/section.hpp"
 #include "periodic.hpp"
 #include "relaxation.hpp"
 
@@ -36,6 +37,7 @@ FluidState<T, Set>::FluidState(const FluidSetting<dimension>& of_fluid)
     if (i > 0) mask.for_fluid(i - 1, [&](int begin, int end) { fluid_below.back() += end - begin; });
   }
   if (setting.openings) {
+    parts_of_ends = core::parts_of_ends(setting.domain, setting.solid.get());
     openings = std::make_unique<OpenLinks<T, Set>>(
         lattice, *setting.openings, setting.solid.get(), setting.walls,
         typename OpenLinks<T, Set>::FlowThere{viscosity_of(1 / setting.relaxation_rate), setting.body_force[0],

@@ -36,8 +36,9 @@ struct FluidState {
   const FluidSetting<dimension>& setting;  ///< of who has this state, and lives as long; its drive may change
   NodeMask mask;
   Lattice<T, Set> lattice;
-  std::unique_ptr<SolidLinks<T, Set>> links;    ///< null without solid nodes
-  std::unique_ptr<OpenLinks<T, Set>> openings;  ///< null where x is periodic
+  std::unique_ptr<SolidLinks<T, Set>> links;           ///< null without solid nodes
+  std::unique_ptr<OpenLinks<T, Set>> openings;         ///< null where x is periodic
+  std::array<std::vector<int>, 2> parts_of_ends = {};  ///< parts_of_ends(); empty without openings
   /// Force density, and after a step the velocity, in active nodes.
   VectorField<T, dimension> force;
   Field<T, dimension> relaxation_rate;

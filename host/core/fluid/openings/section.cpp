@@ -118,13 +118,13 @@ template Section section_at(const Domain<2>&, const SolidNodes<2>*, const WallVe
 template Section section_at(const Domain<3>&, const SolidNodes<3>*, const WallVelocity&, int);
 
 template <int D>
-std::vector<int> parts_of_section(const Domain<D>& domain, int x,
+std::vector<int> parts_of_section(const Domain<D>& domain, int end,
                                   const std::function<bool(const std::array<int, D>&)>& is_fluid) {
   constexpr int solid = -1, unknown = -2;
   const Box<D> section{{}, domain.size};
   std::vector<int> part;
   for (int i = 0; i < row_count(section); ++i) {
-    std::array<int, D> node{x};
+    std::array<int, D> node{end == 0 ? 0 : domain.size[0] - 1};
     const auto row = row_of(section, i);
     std::copy(row.begin(), row.end(), node.begin() + 1);
     part.push_back(is_fluid(node) ? unknown : solid);
@@ -154,6 +154,14 @@ std::vector<int> parts_of_section(const Domain<D>& domain, int x,
   return part;
 }
 
+template <int D>
+std::array<std::vector<int>, 2> parts_of_ends(const Domain<D>& domain, const SolidNodes<D>* solid) {
+  const auto is_fluid = [solid](const std::array<int, D>& node) { return solid == nullptr || !solid->at(node); };
+  return {parts_of_section<D>(domain, 0, is_fluid), parts_of_section<D>(domain, 1, is_fluid)};
+}
+
+template std::array<std::vector<int>, 2> parts_of_ends(const Domain<2>&, const SolidNodes<2>*);
+template std::array<std::vector<int>, 2> parts_of_ends(const Domain<3>&, const SolidNodes<3>*);
 template std::vector<int> parts_of_section<2>(const Domain<2>&, int,
                                               const std::function<bool(const std::array<int, 2>&)>&);
 template std::vector<int> parts_of_section<3>(const Domain<3>&, int,

@@ -1,6 +1,7 @@
 // The developed flow through a section across x of any shape, from the section's own nodes.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -32,12 +33,15 @@ struct Section {
 template <int D>
 Section section_at(const Domain<D>& domain, const SolidNodes<D>* solid, const WallVelocity& walls, int x);
 
-/// The openings beside each other in a section at column x: by row of the lattice the number of the connected part of
-/// the fluid that the row's node belongs to, -1 in the solid. Nodes are connected along axes, over periods, too. Parts
-/// are numbered from 0 in the order of their first rows, of which those at the lowest z, and there at the lowest y,
-/// come first.
+/// The openings beside each other at an end along x, 0 the lower one and 1 the upper one: by row of the lattice the
+/// number of the connected part of the fluid that the row's node belongs to, -1 in the solid. Nodes are connected along
+/// axes, over periods, too. Parts are numbered from 0 in the order of their first rows, of which those at the lowest z,
+/// and there at the lowest y, come first.
 template <int D>
-std::vector<int> parts_of_section(const Domain<D>& domain, int x,
+std::vector<int> parts_of_section(const Domain<D>& domain, int end,
                                   const std::function<bool(const std::array<int, D>& node)>& is_fluid);
+/// The same of both ends. `solid`: null without solid nodes.
+template <int D>
+std::array<std::vector<int>, 2> parts_of_ends(const Domain<D>& domain, const SolidNodes<D>* solid);
 
 }  // namespace rouleau::core
