@@ -35,9 +35,9 @@ void add(std::vector<Quantity>& all, Quantity quantity) {
 }
 
 /// Columns of cells.csv, those of three dimensions, that are reported as they are at the end.
-constexpr std::array<const char*, 7> last_values{
-    "extent_x_m",         "extent_y_m",    "extent_z_m",        "tank_treading_frequency_1_per_s",
-    "velocity_x_m_per_s", "rear_hollow_m", "offset_from_axis_m"};
+constexpr std::array<const char*, 8> last_values{
+    "extent_x_m",         "extent_y_m",         "extent_z_m",    "tank_treading_frequency_1_per_s",
+    "velocity_x_m_per_s", "velocity_over_mean", "rear_hollow_m", "offset_from_axis_m"};
 
 /// Rows of one cell.
 struct CellColumns {

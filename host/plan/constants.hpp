@@ -48,6 +48,7 @@ inline constexpr std::array<AtTau, 6> stretch_limit{
     {{0.505, 0.18}, {0.55, 1.7}, {0.6, 2.3}, {1.0, 6.3}, {2.0, 5.1}, {10.0, 2.1}}};
 inline constexpr std::array<AtTau, 5> bending_limit{{{0.55, 0.36}, {0.6, 0.86}, {1.0, 6.8}, {2.0, 3.8}, {5.0, 1.7}}};
 inline constexpr std::array<AtTau, 3> contact_limit{{{0.6, 0.65}, {1.0, 1.46}, {2.0, 0.97}}};
+inline constexpr double largest_viscous_lag = 0.25;     ///< square of rate times lag: error of the stress [viscous lag]
 inline constexpr double comfortable_margin = 1.3;       ///< below it "auto" takes the semi-implicit step [stiffness]
 inline constexpr double stretching_gain = 20;           ///< of the semi-implicit step [semi-implicit step]
 inline constexpr double cautious_stretching_gain = 4;   ///< beyond the range of the full one [semi-implicit step]

@@ -11,6 +11,7 @@
 #include "core/membrane/node_mobility.hpp"
 #include "core/membrane/semi_implicit_filter.hpp"
 #include "core/surface/surface_filter.hpp"
+#include "core/surface/surface_viscosity.hpp"
 #include "scene/driving_flow.hpp"
 #include "shape/extent.hpp"
 #include "shape/outline.hpp"
@@ -126,6 +127,7 @@ MembraneFacts membrane_facts(const Models& models, std::size_t type, const scene
     if (!planned.active()) continue;
     const core::MembraneLaw& law = made.membranes[type][next++];
     facts.stiffness += law;
+    facts.surface_viscosity += core::surface_viscosity(law);
     if (facts.first)
       facts.stiffness.stretching +=
           std::max(0.0, core::stretching_stiffness(law, {facts.first->least, facts.first->most}) -
@@ -158,8 +160,10 @@ void add_coupling(const Models& models, std::size_t type, double spacing, const 
   facts.bending.narrow({factor * stiffness.bending,
                         kernel.bending_limit * limit_between(bending_limit, scene, cell.interior_viscosity)});
   if (scene.domain.dimension() == 3) {
-    const double eigenvalue = core::largest_eigenvalue(core::kernel_response(kernel.kind, slip.shift),
-                                                       stiffness.stretching, stiffness.bending);
+    const core::KernelResponse response = core::kernel_response(kernel.kind, slip.shift);
+    const double eigenvalue = core::largest_eigenvalue(response, stiffness.stretching, stiffness.bending);
+    facts.viscous_lag = std::max(facts.viscous_lag,
+                                 facts.membranes[type].surface_viscosity / core::viscous_modulus(viscosity, response));
     facts.steps_of_mean = std::max(facts.steps_of_mean, core::steps_of_mean(eigenvalue, viscosity));
   } else if (scene.numerics.slip_correction && !std::holds_alternative<scene::Circle>(cell.shape)) {
     const double over_radius = length * spacing / of_type.radius;

@@ -37,6 +37,7 @@ struct MembraneFacts {
   double elastic_modulus = 0;  ///< d tension / d stretch at rest, of laws that give it
   double recovery_rate = 0;    ///< Es/(mu a), 1/s: Es a third of the stretching stiffness, as of a neo-Hookean membrane
   double tension = 0;          ///< of a circle or sphere at its prestretch, or of the first state
+  double surface_viscosity = 0;                   ///< shear and area together; in three dimensions
   std::optional<shape::FirstStretch> first = {};  ///< with a stress-free shape
 };
 
@@ -46,6 +47,7 @@ struct ModelFacts {
   std::vector<std::optional<PotentialShape>> potentials;  ///< of each interaction; none: inactive, or it remembers
   double cutoff = 0;                                      ///< largest, between cells and within them
   Bounded stretching, bending;                            ///< of the cell type that is nearest to its limit
+  double viscous_lag = 0;    ///< steps by which the stress of viscous membranes lags in a motion that changes
   double steps_of_mean = 0;  ///< over which a semi-implicit step holds forces; in three dimensions
   /// Variance over which slip is spread along a membrane, over the radius squared; in two dimensions, of cells that are
   /// not round. By the stretching stiffness alone; the bending of a red cell would add less than 2 %.

@@ -91,6 +91,16 @@ void add_oscillation(const LimitedStage& of, LimitList& limits) {
                of.lower + ": the fluid is simulated heavier than it is and lags behind what drives it", of.density);
 }
 
+/// A triangle of a membrane that treads is strained back and forth at most as fast as the flow shears.
+void add_viscous_lag(const LimitedStage& of, LimitList& limits) {
+  const double rate = of.facts.shear_rate * of.stage.units.time + 2 * std::numbers::pi * of.stage.oscillation.frequency;
+  const double lag = of.facts.models->viscous_lag;
+  if (!(rate * lag > 0)) return;
+  limits.below("relative error of the stress of viscous membranes where it changes as fast as the flow" + of.where,
+               rate * rate * lag * lag, largest_viscous_lag,
+               of.lower + ": the stress lags by " + number(lag, 3) + " steps", of.density);
+}
+
 /// Strain within which the cell type that takes longest comes to its steady shape.
 double slowest_relaxation(const LimitedStage& of) {
   double slowest = 0;
@@ -144,6 +154,7 @@ constexpr std::array stage_limits{
     StageLimits{.add = add_travel, .of_cells = true},
     StageLimits{.add = add_forces_on_cells, .of_cells = true},
     StageLimits{.add = add_stiffness, .of_cells = true},
+    StageLimits{.add = add_viscous_lag, .of_cells = true},
     StageLimits{.add = add_slip_and_prestress, .of_cells = true},
     StageLimits{.add = add_potentials, .of_cells = true},
     StageLimits{.add = add_gaps, .of_cells = true, .of_first_stage = true},

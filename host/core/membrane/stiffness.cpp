@@ -38,6 +38,15 @@ class Probe {
     if (law_.reads("rest_curvature")) block_.rest_curvature = zero_.data();
     return compute(&rouleau_membrane_block::moment_by_curvature);
   }
+  std::vector<double> viscosities() {
+    block_.invariant_1 = block_.invariant_2 = arguments_.data();
+    std::vector<double> shear(arguments_.size(), 0.0), area(shear);
+    if (law_.writes("shear_viscosity")) block_.shear_viscosity = shear.data();
+    if (law_.writes("area_viscosity")) block_.area_viscosity = area.data();
+    law_.compute(&block_);
+    for (std::size_t i = 0; i < shear.size(); ++i) result_[i] = shear[i] + area[i];
+    return result_;
+  }
 
  private:
   /// Of a law of triangles: the tension along one principal direction, stretched so, while the other is held at rest.
@@ -103,6 +112,11 @@ double tension_at(const MembraneLaw& law, double stretch) {
 double bending_stiffness(const MembraneLaw& law) {
   if (!law.writes("moment_by_curvature")) return 0;
   return largest(Probe(law, {0.0}).moment_by_curvature());
+}
+
+double surface_viscosity(const MembraneLaw& law) {
+  if (!law.writes("shear_viscosity") && !law.writes("area_viscosity")) return 0;
+  return Probe(law, {0.0}).viscosities().front();
 }
 
 }  // namespace rouleau::core

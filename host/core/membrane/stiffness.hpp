@@ -19,6 +19,9 @@ double tension_at(const MembraneLaw& law, double stretch);
 /// other laws. Lattice units.
 double bending_stiffness(const MembraneLaw& law);
 
+/// What such a law gives as viscosities of a membrane at rest, shear and area together; 0 for other laws.
+double surface_viscosity(const MembraneLaw& law);
+
 /// Both, as above; of several laws they add up.
 struct Stiffness {
   double stretching = 0, bending = 0;

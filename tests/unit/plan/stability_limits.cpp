@@ -195,6 +195,29 @@ TEST_CASE("plan knows how far membranes turn while a semi-implicit step holds th
   CHECK(held({"/numerics/kernel=sharp6", "/numerics/slip_correction=true"}) > 1.3 * *sharp);
 }
 
+TEST_CASE("plan knows by how many steps the stress of viscous membranes lags") {
+  const Catalog catalog({ROULEAU_PLUGINS});
+  const auto error = [&](const std::string& law, const std::string& density) -> std::optional<double> {
+    const Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/red-cell-3d.json",
+                                   {"/cell_types/rbc/membrane=[" + law + "]", "/numerics/density_factor=" + density});
+    for (const Limit& limit : find_limits(make_plan(scene, catalog)))
+      if (limit.name.starts_with("relative error of the stress of viscous membranes")) return limit.value;
+    return std::nullopt;
+  };
+  const std::string elastic = R"({"model": "neo-hookean", "parameters": {"shear_modulus": "4e-6 N/m"}})";
+  const std::string viscous =
+      elastic + R"(, {"model": "viscous", "parameters": {"viscosity": "2e-7 N s/m", "area_viscosity": "3e-7 N s/m"}})";
+  CHECK_FALSE(error(elastic, "600"));
+  // The spring before the dashpot has half a lattice unit at tau 1: a lag of twice the viscosity in lattice units, which
+  // is that over the fluid's and the spacing, times 1/6.
+  const double spacing = 20e-6 / 60, steps = 2 * 5e-7 / (1.2e-3 * spacing) / 6;
+  const double step = spacing * spacing / 6 / (1.2e-3 / 600e3);
+  const std::optional<double> found = error(viscous, "600");
+  REQUIRE(found);
+  CHECK(*found == Approx(std::pow(100 * step * steps, 2)).epsilon(1e-9));
+  CHECK(*error(viscous, "300") == Approx(*found / 4).epsilon(1e-9));
+}
+
 TEST_CASE("plan knows over what length the slip of stiff membranes is smoothed, where cells turn over") {
   const Catalog catalog({ROULEAU_PLUGINS});
   const auto smoothing = [&](double stiffness, const std::vector<std::string>& further) -> std::optional<double> {
