@@ -10,7 +10,7 @@ CHAPTERS = {
             "docs/error-bars.md", "docs/auto.md", "docs/simulation.md", "docs/library.md", "docs/resume.md", "docs/ranks.md",
             "docs/rheology.md", "docs/study-quantities.md"],
     "Reference": ["docs/reference/scene.md", "docs/reference/models.md", "docs/reference/python.md"],
-    "Trust the numbers": ["docs/physics.md", "docs/accuracy.md", "docs/experiments.md", "docs/capillaries.md", "docs/study.md", "docs/stability.md",
+    "Trust the numbers": ["docs/physics.md", "docs/accuracy.md", "docs/experiments.md", "docs/capillaries.md", "docs/blood.md", "docs/study.md", "docs/stability.md",
                           "docs/paper.md", "docs/performance.md"],
     "Extend": ["sdk/README.md", "docs/conformance.md", "docs/conformance-checks.md", "docs/compatibility.md", "docs/trust.md",
                "docs/methods.md", "docs/architecture.md", "docs/testing.md", "CONTRIBUTING.md"],
