@@ -70,7 +70,7 @@ class Blood(unittest.TestCase):
         for part, runs in blood.PARTS.items():
             for label, (scene, changes) in runs().items():
                 content = json.loads((SOURCE / f"scenes/blood/{scene}.json").read_text())
-                for pointer in changes:
+                for pointer in changes.keys() - blood.LEAK.keys():
                     *way, last = pointer.split("/")[1:]
                     place = content
                     for key in way:
