@@ -127,7 +127,6 @@ MembraneFacts membrane_facts(const Models& models, std::size_t type, const scene
     if (!planned.active()) continue;
     const core::MembraneLaw& law = made.membranes[type][next++];
     facts.stiffness += law;
-    facts.surface_viscosity += core::surface_viscosity(law);
     if (facts.first)
       facts.stiffness.stretching +=
           std::max(0.0, core::stretching_stiffness(law, {facts.first->least, facts.first->most}) -
@@ -162,8 +161,7 @@ void add_coupling(const Models& models, std::size_t type, double spacing, const 
   if (scene.domain.dimension() == 3) {
     const core::KernelResponse response = core::kernel_response(kernel.kind, slip.shift);
     const double eigenvalue = core::largest_eigenvalue(response, stiffness.stretching, stiffness.bending);
-    facts.viscous_lag = std::max(facts.viscous_lag,
-                                 facts.membranes[type].surface_viscosity / core::viscous_modulus(viscosity, response));
+    facts.viscous_lag = std::max(facts.viscous_lag, stiffness.viscosity / core::viscous_modulus(viscosity, response));
     facts.steps_of_mean = std::max(facts.steps_of_mean, core::steps_of_mean(eigenvalue, viscosity));
   } else if (scene.numerics.slip_correction && !std::holds_alternative<scene::Circle>(cell.shape)) {
     const double over_radius = length * spacing / of_type.radius;

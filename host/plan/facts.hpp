@@ -37,7 +37,6 @@ struct MembraneFacts {
   double elastic_modulus = 0;  ///< d tension / d stretch at rest, of laws that give it
   double recovery_rate = 0;    ///< Es/(mu a), 1/s: Es a third of the stretching stiffness, as of a neo-Hookean membrane
   double tension = 0;          ///< of a circle or sphere at its prestretch, or of the first state
-  double surface_viscosity = 0;                   ///< shear and area together; in three dimensions
   std::optional<shape::FirstStretch> first = {};  ///< with a stress-free shape
 };
 

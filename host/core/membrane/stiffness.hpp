@@ -22,12 +22,13 @@ double bending_stiffness(const MembraneLaw& law);
 /// What such a law gives as viscosities of a membrane at rest, shear and area together; 0 for other laws.
 double surface_viscosity(const MembraneLaw& law);
 
-/// Both, as above; of several laws they add up.
+/// All three, as above; of several laws they add up.
 struct Stiffness {
-  double stretching = 0, bending = 0;
+  double stretching = 0, bending = 0, viscosity = 0;
   Stiffness& operator+=(const MembraneLaw& law) {
     stretching += stretching_stiffness(law);
     bending += bending_stiffness(law);
+    viscosity += surface_viscosity(law);
     return *this;
   }
 };
