@@ -122,7 +122,14 @@ void Engine<D>::begin_stage(int stage) {
 
 template <int D>
 void Engine<D>::change_cells(const std::vector<int>& gone, const std::vector<Arrival>& come) {
-  for (const int c : gone) cells_.largest_step[c] = 0;
+  // Checkpoints hold what is left of them, which is the same on all ranks.
+  for (const int c : gone) {
+    const core::CellRange& cell = cells_.cells[c];
+    cells_.largest_step[c] = 0;
+    if (!cells_.area_leakage.empty()) cells_.area_leakage[c] = 0;
+    for (auto* of_nodes : {&cells_.position, &cells_.velocity, &cells_.force})
+      for (int k = 0; k < D; ++k) std::fill_n((*of_nodes)[k].begin() + cell.first, cell.count, 0.0);
+  }
   for (const Arrival& arrival : come) {
     const core::CellRange& cell = cells_.cells[arrival.cell];
     for (int k = 0; k < D; ++k) {
