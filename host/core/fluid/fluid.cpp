@@ -170,6 +170,7 @@ template <class T, class Set>
 void Fluid<T, Set>::set_rest() {
   if (!driven()) return;
   set_profile([](double) { return 0.0; }, [](double) { return 0.0; });
+  if (state_.links) state_.links->start_walls();
   walls_have_acted_ = false;
 }
 

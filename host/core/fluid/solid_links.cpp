@@ -89,6 +89,8 @@ SolidLinks<T, Set>::SolidLinks(const Lattice<T, Set>& lattice, const SolidNodes<
     });
   }
   first_.push_back(links_.size());
+  for (std::size_t i = 0; i < given_.size(); ++i) links_[i].left = -given_[i];  // as restart() of populations of zero
+  start_walls();
 }
 
 template class SolidLinks<float, D2Q9>;

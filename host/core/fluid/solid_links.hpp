@@ -52,6 +52,12 @@ class SolidLinks {
     after_step(piece, out);
     for (Link& link : of_piece(piece)) link.left -= given(link);
   }
+  /// Of a fluid that has been set to rest while walls move: they have brought in half of what they bring in a step.
+  /// Momentum of alternating sign along the lattice is conserved but for its sign; what a wall brings of it in each step
+  /// would go on to alternate between nothing and all of it, and begins here at its mean instead.
+  void start_walls() {
+    for (std::size_t i = 0; i < given_.size(); ++i) links_[i].left += given_[i] / 2;
+  }
   /// Before the piece is collided: after receive_row() in an even step. May be repeated.
   void before_step(std::size_t piece, const Out& out) {
     for (const Link& link : of_piece(piece))
