@@ -99,27 +99,6 @@ LimitsParameter read_parameter(const json::Document& document, const Json& scene
   return parameter;
 }
 
-ExtremeCase read_case(const json::Document& document, std::size_t index, const LimitsFile& limits) {
-  const std::string at = json::child_pointer("/cases", index);
-  const Json& given = document.root()["cases"][index];
-  ExtremeCase extreme;
-  extreme.name = given["name"];
-  extreme.expect = given.value("expect", "either");
-  extreme.steps = given.value("steps", limits.steps);
-  extreme.scene = limits.scene;
-  if (given.contains("set")) trial::put_changes(extreme.scene, document, at + "/set");
-  if (given.contains("answer")) {
-    const Json& a = given["answer"];
-    extreme.answer = {a["table"], a["column"], a.value("source", ""), a.value("cell", 0), a["value"], a["tolerance"]};
-  }
-  for (const ExtremeCase& other : limits.cases) {
-    if (other.name == extreme.name)
-      throw Error(Cause::bad_input, document.place(at + "/name"),
-                  in_quotes(extreme.name) + " is the name of another case, too; give each its own");
-  }
-  return extreme;
-}
-
 }  // namespace
 
 Json LimitsParameter::written(double value) const {
@@ -132,14 +111,8 @@ LimitsFile read_limits(const fs::path& file) {
   static_cast<trial::CampaignFile&>(limits) = trial::read_campaign_file(trial::limits_kind, file, limits_schema());
   const json::Document& document = *limits.document;
   const Json& root = document.root();
-  if (!root.contains("parameter") && !root.contains("cases"))
-    throw Error(Cause::bad_input, document.place(""),
-                "has neither \"parameter\", whose edge of stability is looked for, nor \"cases\"; write one of them");
   limits.steps = root.value("steps", 0L);
-  if (root.contains("parameter")) limits.parameter = read_parameter(document, limits.scene);
-  if (root.contains("cases")) {
-    for (std::size_t i = 0; i < root["cases"].size(); ++i) limits.cases.push_back(read_case(document, i, limits));
-  }
+  limits.parameter = read_parameter(document, limits.scene);
   if (root.contains("sound")) limits.criteria = root["sound"];
   return limits;
 }

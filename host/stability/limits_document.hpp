@@ -1,9 +1,8 @@
-// A limits file as the user wrote it: scene, combinations of methods, the parameter whose edge is sought, cases; and
-// what has been found of it.
+// A limits file as the user wrote it: scene, combinations of methods, and the parameter whose edge is
+// sought; and what has been found of it.
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,23 +21,8 @@ struct LimitsParameter {
   [[nodiscard]] nlohmann::json written(double value) const;
 };
 
-/// What the last row of a table should say.
-struct RightAnswer {
-  std::string table, column, source;
-  int cell = 0;
-  double value = 0, tolerance = 0;
-};
-
-struct ExtremeCase {
-  std::string name, expect;  ///< right, stops, either
-  nlohmann::json scene;
-  long steps = 0;  ///< 0: all of the scene's
-  std::optional<RightAnswer> answer;
-};
-
 struct LimitsFile : trial::CampaignFile {
-  std::optional<LimitsParameter> parameter;
-  std::vector<ExtremeCase> cases;
+  LimitsParameter parameter;
   long steps = 0;  ///< of a trial; 0: all of the scene's
   HealthCriteria criteria;
 };
@@ -63,18 +47,9 @@ struct CombinationResult {
   std::vector<LimitsTrial> trials;  ///< in the order of the search
 };
 
-struct CaseResult {
-  const ExtremeCase* extreme;
-  Judgement judgement;
-  std::string verdict;  ///< "right answer", "stopped with a reason", "WRONG"
-  std::string outcome;  ///< one sentence
-  bool as_expected = false;
-};
-
 struct LimitsState {
   const LimitsFile* limits;
   std::vector<CombinationResult> combinations;
-  std::vector<CaseResult> cases;
   std::string started, finished;  ///< finished: empty while it runs
 };
 

@@ -51,11 +51,6 @@ Json edge_json(const LimitsState& state, const CombinationResult& combination, s
           {"trials", trials}};
 }
 
-Json case_json(const CaseResult& result) {
-  return {{"name", result.extreme->name}, {"expect", result.extreme->expect},  {"verdict", result.verdict},
-          {"outcome", result.outcome},    {"as_expected", result.as_expected}, {"failure", result.judgement.failure}};
-}
-
 /// What a reader should know before trusting an edge.
 Json limits_warnings(const LimitsState& state) {
   Json warnings = Json::array();
@@ -86,65 +81,36 @@ std::string labels_text(const Json& labels) {
 
 }  // namespace
 
-double last_value(const fs::path& directory, const RightAnswer& answer) {
-  const fs::path file = directory / (answer.table + ".csv");
-  if (!fs::exists(file)) return std::nan("");
-  const files::StoredTable table(file);
-  if (!table.has(answer.column)) return std::nan("");
-  const std::vector<double> values = table.numbers(answer.column);
-  if (answer.table != "cells") return values.empty() ? std::nan("") : values.back();
-  const std::vector<std::string> cells = table.texts("cell");
-  for (std::size_t row = values.size(); row-- > 0;) {
-    if (cells[row] == std::to_string(answer.cell)) return values[row];
-  }
-  return std::nan("");
-}
-
 Json limits_json(const LimitsState& state) {
   const LimitsFile& limits = *state.limits;
-  Json edges = Json::array(), cases = Json::array();
-  std::size_t combinations = limits.parameter ? trial::cross(limits.axes).size() : 0;
-  bool complete = state.combinations.size() == combinations && state.cases.size() == limits.cases.size();
+  Json edges = Json::array();
+  bool complete = state.combinations.size() == trial::cross(limits.axes).size();
   for (const CombinationResult& combination : state.combinations) {
     complete = complete && combination.search.complete;
     for (std::size_t i = 0; i < combination.search.edges.size(); ++i) edges.push_back(edge_json(state, combination, i));
   }
-  for (const CaseResult& result : state.cases) cases.push_back(case_json(result));
   Json result = trial::result_head(trial::limits_kind, limits, state.started, state.finished, complete);
   result.update({{"sound", limits.criteria},
                  {"steps", limits.steps > 0 ? Json(limits.steps) : Json()},
-                 {"parameter", limits.parameter ? parameter_json(*limits.parameter) : Json()},
+                 {"parameter", parameter_json(limits.parameter)},
                  {"edges", edges},
-                 {"cases", cases},
                  {"warnings", limits_warnings(state)}});
   return result;
 }
 
 std::string limits_csv(const Json& limits) {
-  Json head = {"kind", "name"};
+  Json head = {"parameter"};
   for (const Json& axis : limits["axes"]) head.push_back(axis["name"]);
-  for (const char* name : {"direction", "stable_up_to", "unstable_from", "unit", "expect", "verdict", "reason", "step"})
+  for (const char* name : {"direction", "stable_up_to", "unstable_from", "unit", "reason", "step"})
     head.push_back(name);
   std::string table = trial::csv_line(head);
-  const auto add_failure = [](Json& row, const Json& failure) {
-    for (const char* key : {"reason", "step"}) row.push_back(failure.is_object() ? rounded(failure[key]) : Json());
-  };
   for (const Json& edge : limits["edges"]) {
-    Json row = {"edge", limits["parameter"]["name"]};
+    Json row = {limits["parameter"]["name"]};
     for (const Json& axis : limits["axes"]) row.push_back(edge["labels"][axis["name"].get<std::string>()]);
     for (const char* key : {"direction", "stable_up_to", "unstable_from"}) row.push_back(rounded(edge[key]));
     row.push_back(limits["parameter"]["unit"]);
-    row.push_back(nullptr);
-    row.push_back(nullptr);
-    add_failure(row, edge["failure"]);
-    table += trial::csv_line(row);
-  }
-  for (const Json& extreme : limits["cases"]) {
-    Json row = {"case", extreme["name"]};
-    for (std::size_t i = 0; i < limits["axes"].size() + 4; ++i) row.push_back(nullptr);
-    row.push_back(extreme["expect"]);
-    row.push_back(extreme["verdict"]);
-    add_failure(row, extreme["failure"]);
+    const Json& failure = edge["failure"];
+    for (const char* key : {"reason", "step"}) row.push_back(failure.is_object() ? rounded(failure[key]) : Json());
     table += trial::csv_line(row);
   }
   return table;
@@ -156,7 +122,7 @@ std::string limits_text(const Json& limits) {
     const std::string unit = limits["parameter"]["unit"].get<std::string>();
     return number(v.get<double>()) + (unit.empty() ? "" : ' ' + unit);
   };
-  if (!limits["edges"].empty()) text << limits["parameter"]["name"].get<std::string>() << "\n";
+  text << limits["parameter"]["name"].get<std::string>() << "\n";
   for (const Json& edge : limits["edges"]) {
     text << "  " << labels_text(edge["labels"]) << ": ";
     const Json &stable = edge["stable_up_to"], &unstable = edge["unstable_from"];
@@ -169,12 +135,6 @@ std::string limits_text(const Json& limits) {
            << value(unstable) << ": ";
     }
     text << (edge["failure"].is_null() ? "" : failure_text(edge["failure"])) << "\n";
-  }
-  for (const Json& extreme : limits["cases"]) {
-    text << "  " << extreme["name"].get<std::string>() << ": " << extreme["verdict"].get<std::string>();
-    if (!extreme["failure"].is_null()) text << " (" << failure_text(extreme["failure"]) << ")";
-    if (!extreme["as_expected"]) text << ", expected: " << extreme["expect"].get<std::string>();
-    text << "\n";
   }
   for (const Json& warning : limits["warnings"]) text << "warning: " << warning.get<std::string>() << "\n";
   return text.str();

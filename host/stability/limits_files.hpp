@@ -11,7 +11,7 @@ namespace rouleau::stability {
 
 /// What limits.json says (limits-result.schema.json).
 nlohmann::json limits_json(const LimitsState& state);
-/// Edges and cases as a table, one row each.
+/// The edges as a table, one row each.
 std::string limits_csv(const nlohmann::json& limits);
 /// The same for a terminal.
 std::string limits_text(const nlohmann::json& limits);
@@ -19,8 +19,5 @@ std::string limits_text(const nlohmann::json& limits);
 /// Writes limits.json, limits.csv and limits.html into the directory, each whole or not at all. Throws
 /// Error(input_output).
 void write_limits_files(const LimitsState& state, const std::filesystem::path& directory);
-
-/// The value that a right answer is compared with; NaN where the table has none.
-double last_value(const std::filesystem::path& directory, const RightAnswer& answer);
 
 }  // namespace rouleau::stability

@@ -9,12 +9,6 @@
 
 namespace rouleau::stability {
 
-/// What a run came to, and where it lies.
-struct JudgedRun {
-  Judgement judgement;
-  std::filesystem::path directory;
-};
-
 class LimitsRun {
  public:
   /// Makes the directory, or goes on in the one that the same command has left. Throws Error(bad_input) for a directory
@@ -27,9 +21,8 @@ class LimitsRun {
 
  private:
   void search(const trial::Point& point);
-  void try_case(const ExtremeCase& extreme);
   /// Nothing when interrupted.
-  std::optional<JudgedRun> try_scene(const nlohmann::json& scene, long steps);
+  std::optional<Judgement> try_scene(const nlohmann::json& scene);
   void write() const;
 
   const LimitsFile& limits_;
@@ -37,9 +30,5 @@ class LimitsRun {
   trial::Campaign campaign_;
   LimitsState state_;
 };
-
-/// "right answer" where a case came to its end soundly, and to the answer where one is given; "stopped with a reason"
-/// where the program gave the reason; "WRONG" else. `directory`: of its run.
-CaseResult judge_case(const ExtremeCase& extreme, Judgement judgement, const std::filesystem::path& directory);
 
 }  // namespace rouleau::stability

@@ -335,13 +335,11 @@ class The_page_of_limits(PageCase):
         """Stretches of the bar of a combination as [class, from, to] in values of the parameter."""
         return page.run(f"""(() => {{ const row = map.rows.find(r => r.name === {json.dumps(name)}); return stretches(row, map.low, map.high).map(s => [s.what, s.from, s.to]); }})()""")
 
-    def test_says_first_what_the_map_and_the_cases_come_to(self):
+    def test_says_first_what_the_map_comes_to(self):
         page = self.open(PAGES["limits"])
         words = self.text(page, ".status")
         self.assertIn("9 combinations: 1 is stable throughout, 1 fails everywhere, 7 have an edge.", words)
         self.assertIn("First to fail: ", words)
-        self.assertIn("4 extreme cases: 2 × stopped with a reason, 1 × right answer, 1 × WRONG; 2 did not end as expected.", words)
-        self.assertIn("bad", page.run("document.querySelector('.status').className"))
 
     def test_has_a_blue_for_stable_that_no_eye_takes_for_a_failure(self):
         for scheme in ("light", "dark"):
@@ -399,16 +397,8 @@ class The_page_of_limits(PageCase):
         page = self.open(PAGES["limits"])
         self.assertEqual(len(self.rows(page, "Edges")), len(LIMITS["edges"]))
         self.assertEqual(self.rows(page, "Stable range, as a grid")[2][2][:7], "nowhere")
-        self.assertEqual([row[1] for row in self.rows(page, "Extreme cases")], [c["verdict"] for c in LIMITS["cases"]])
-        self.assertEqual(page.run("[document.querySelectorAll('td.over').length, document.querySelectorAll('td.near').length]"), [1, 3])
         self.assertEqual(self.rows(page, "Edges")[-1][-1], page.run(f"format({LIMITS['edges'][-1]['out_of_order'][0]}, 3)"))
         self.assertIn("a factor of 1.1", self.text(page))
-
-    def test_of_cases_alone_has_no_map(self):
-        page = self.open(report("cases", dict(LIMITS, edges=[], axes=[], parameter=None)))
-        self.assertEqual(page.run("document.querySelectorAll('.map').length"), 0)
-        self.assertEqual(len(self.rows(page, "Extreme cases")), 4)
-        self.assert_sound(page)
 
     def test_of_a_search_that_was_stopped_at_once_knows_nothing_yet(self):
         result = json.loads(json.dumps(LIMITS))

@@ -1,4 +1,4 @@
-"""The command rouleau limits: edges, cases, bad files, and how it goes on. Python's standard library only.
+"""The command rouleau limits: edges, bad files, and how it goes on. Python's standard library only.
 
 usage: check_limits.py ROULEAU SOURCE_FOLDER
 """
@@ -107,28 +107,27 @@ class Edges(Case):
 
 
 class Cases(Case):
-    def test_cases_end_right_or_with_a_reason(self):
-        soft, stiff = {}, {MODULUS: "6e-3 N/m"}
-        cases = [{"name": "as it is", "expect": "right", "set": soft},
-                 {"name": "stiff", "expect": "stops", "set": stiff},
-                 {"name": "two at one place", "expect": "stops", "set": {"/cells/-": SCENE["cells"][0]}},
-                 {"name": "area", "expect": "right", "answer": {
-                     "table": "cells", "column": "area_m2", "value": 1.362222e-11, "tolerance": 2e-14,
-                     "source": "biconcave outline, docs/physics.md; its polygon lies within"}}]
-        self.run_limits(self.write(cases=cases))
-        verdicts = [(c["verdict"], c["failure"] and c["failure"]["reason"]) for c in self.found()["cases"]]
-        self.assertEqual(verdicts, [("right answer", None), ("stopped with a reason", "node_step"),
-                                    ("stopped with a reason", "refused"), ("right answer", None)])
-        self.assertIn("move them apart", self.found()["cases"][2]["outcome"])
+    """tests/stability/cases.py, which runs extreme cases by hand."""
 
-    def test_a_wrong_answer_and_a_hang_end_with_exit_code_1(self):
-        wrong = {"table": "cells", "column": "area_m2", "value": 2e-11, "tolerance": 1e-13}
-        self.run_limits(self.write(cases=[{"name": "wrong", "answer": wrong}]), code=1)
-        self.assertEqual(self.found()["cases"][0]["failure"]["reason"], "wrong_answer")
-        slow = {"name": "slow", "steps": 100000000, "set": {"/stages/0/strain": 1000}}
-        self.run_limits(self.write(cases=[slow], time_limit="0.5 s"), code=1)
-        case = self.found()["cases"][0]
-        self.assertEqual((case["verdict"], case["failure"]["reason"]), ("WRONG", "timed_out"))
+    def judged(self, code, bounds=None, **case):
+        file = self.write(cases=[{"name": "a", **case}], **(bounds or {}))
+        words = [sys.executable, Path(__file__).resolve().parents[1] / "stability/cases.py", PROGRAM, file, "--out", self.out]
+        done = subprocess.run(words, capture_output=True, text=True)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done.stdout
+
+    def test_cases_end_right_or_with_a_reason(self):
+        area = {"table": "cells", "column": "area_m2", "value": 1.362222e-11, "tolerance": 2e-14}  # its polygon lies within
+        self.assertIn("a: right answer", self.judged(0, expect="right", answer=area))
+        self.assertIn("stopped with a reason: node_step", self.judged(0, expect="stops", set={MODULUS: "6e-3 N/m"}))
+        self.assertIn("stopped with a reason: refused", self.judged(0, expect="stops", set={"/cells/0/at": ["-1 um", "0 um"]}))
+
+    def test_a_wrong_answer_and_a_hang_are_wrong(self):
+        answer = {"table": "cells", "column": "area_m2", "value": 2e-11, "tolerance": 1e-13}
+        self.assertIn("WRONG: area_m2 is", self.judged(1, answer=answer))
+        self.assertIn("NOT AS EXPECTED", self.judged(1, expect="stops"))
+        self.assertIn("stretch is", self.judged(1, bounds={"sound": {"stretch": 1.000001}}))
+        self.assertIn("timed out", self.judged(1, {"time_limit": "0.5 s"}, steps=100000000, set={"/stages/0/strain": 1000}))
 
 
 class BadFiles(Case):
@@ -140,7 +139,7 @@ class BadFiles(Case):
         self.assertFalse(self.out.exists())
 
     def test_nothing_to_do(self):
-        self.refused(["neither \"parameter\"", "nor \"cases\""])
+        self.refused(["\"parameter\""])
 
     def test_unknown_key(self):
         self.refused(["/paramter", "did you mean \"parameter\""], paramter=STIFFNESS)
@@ -175,16 +174,13 @@ class BadFiles(Case):
     def test_scene_that_is_not_there(self):
         self.refused(["/scene", "there is no scene"], scene="none.json", parameter=STIFFNESS)
 
-    def test_case_names_twice(self):
-        self.refused(["/cases/1/name", "another case"], cases=[{"name": "a"}, {"name": "a"}])
-
     def test_time_limit(self):
-        self.refused(["/time_limit"], cases=[{"name": "a"}], time_limit="2 um")
+        self.refused(["/time_limit"], parameter=STIFFNESS, time_limit="2 um")
 
     def test_a_directory_of_something_else_is_left_alone(self):
         self.out.mkdir()
         (self.out / "precious.txt").write_text("precious")
-        result = self.run_limits(self.write(cases=[{"name": "a"}]), code=2)
+        result = self.run_limits(self.write(parameter=STIFFNESS), code=2)
         self.assertIn("--out", result.stderr)
         self.assertEqual([p.name for p in self.out.iterdir()], ["precious.txt"])
 

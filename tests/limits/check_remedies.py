@@ -3,7 +3,7 @@ the same runs must pass the place. Python's standard library only.
 
 usage: check_remedies.py ROULEAU SOURCE_FOLDER [--all]
 
---all: every point of attraction of limits/adhesion.json and adhesion-at-rest.json that fails (some core-minutes)
+--all: every point of attraction of limits/adhesion.json and tests/stability/adhesion-at-rest.json that fails (some core-minutes)
 """
 
 import copy
@@ -193,8 +193,8 @@ class A_remedy_ends_its_failure(Case):
 
     @unittest.skipUnless(ALL, "long")
     def test_pairs_at_rest_without_what_holds_them(self):
-        for case in with_limits("adhesion-at-rest.json")[1]["cases"]:
-            scene, _ = with_limits("adhesion-at-rest.json", *case["set"].items(),
+        for case in with_limits("../tests/stability/adhesion-at-rest.json")[1]["cases"]:
+            scene, _ = with_limits("../tests/stability/adhesion-at-rest.json", *case["set"].items(),
                                    ("/numerics/slip_correction", False), ("/numerics/area_correction", False))
             del scene["interactions"][1]
             scene["stages"][0]["density_factor"] *= 4

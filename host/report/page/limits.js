@@ -12,24 +12,19 @@ function edgeSentence(row, unit) {
   return parts.length ? parts.join("; ") : "stable at every value that was tried";
 }
 
-/// What the map and the cases come to, in sentences: {text, bad}.
+/// What the map comes to, in sentences.
 function limitsSentences(result, rows, unit) {
-  const said = [], {parameter, cases = []} = result, name = spelled(parameter?.name ?? "the parameter");
-  if (rows.length === 1) said.push({text: `${name}: ${edgeSentence(rows[0], unit)}.`});
+  const said = [], {parameter} = result, name = spelled(parameter?.name ?? "the parameter");
+  if (rows.length === 1) said.push(`${name}: ${edgeSentence(rows[0], unit)}.`);
   else if (rows.length) {
     const are = words => rows.filter(row => edgeText(row, unit) === words).length, unknown = are("not known yet"), nowhere = are("stable nowhere"), throughout = are("stable throughout");
     const edges = rows.filter(row => row.above?.unstable_from != null && row.above.stable_up_to !== null).sort((a, b) => a.above.stable_up_to - b.above.stable_up_to), [first, last] = [edges[0], edges.at(-1)];
     const ranged = [parameter.from, parameter.to].every(v => typeof v === "number") ? ` from ${format(parameter.from, 3)} to ${`${format(parameter.to, 3)} ${unit}`.trim()}` : "";
     const parts = [throughout ? `${throughout} ${throughout === 1 ? "is" : "are"} stable throughout` : null, nowhere ? `${nowhere} ${nowhere === 1 ? "fails" : "fail"} everywhere` : null,
       rows.length - nowhere - throughout - unknown ? `${count(rows.length - nowhere - throughout - unknown, "has an edge", "have an edge")}` : null, unknown ? `of ${unknown} nothing is known yet` : null].filter(Boolean);
-    said.push({text: `${name}${ranged}, ${count(rows.length, "combination")}: ${parts.join(", ")}.`});
-    if (first) said.push({text: `First to fail: ${first.name}, ${edgeSentence(first, unit)}.`});
-    if (last && last !== first) said.push({text: `Last to fail: ${last.name}, ${edgeSentence(last, unit)}.`});
-  }
-  if (cases.length) {
-    const wrong = cases.filter(c => isWrong(c.verdict)), words = [...new Set(cases.map(c => c.verdict))].map(verdict => `${cases.filter(c => c.verdict === verdict).length} × ${verdict}`);
-    const other = cases.filter(c => c.as_expected === false).length;
-    said.push({text: `${count(cases.length, "extreme case")}: ${words.join(", ")}${other ? `; ${other} did not end as expected` : ""}.`, bad: wrong.length > 0});
+    said.push(`${name}${ranged}, ${count(rows.length, "combination")}: ${parts.join(", ")}.`);
+    if (first) said.push(`First to fail: ${first.name}, ${edgeSentence(first, unit)}.`);
+    if (last && last !== first) said.push(`Last to fail: ${last.name}, ${edgeSentence(last, unit)}.`);
   }
   return said;
 }
@@ -39,14 +34,13 @@ function showLimits(result) {
   document.title = `${title} – Rouleau`;
   page.append(element("h1", {}, title), note([result.limits_file, result.started, result.machine?.cpu].filter(Boolean).join(" · ")));
   const {methods: rows, varied} = methodsOf(result.axes ?? [], result.edges ?? []), said = limitsSentences(result, mapRows(result), unit);
-  page.append(element("div", {class: "card status sentences" + (said.some(s => s.bad) ? " bad" : "")},
-    element("ul", {}, ...(said.length ? said : [{text: "Nothing has been tried yet."}]).map(s => element("li", s.bad ? {class: "over"} : {}, s.text)))));
+  page.append(element("div", {class: "card status sentences"},
+    element("ul", {}, ...(said.length ? said : ["Nothing has been tried yet."]).map(s => element("li", {}, s)))));
   const warnings = [...(result.complete === false ? ["The search is not finished; the same command continues it."] : []), ...(result.warnings ?? [])];
   if (warnings.length) page.append(warningBox(warnings));
   page.append(links);
   const map = rows.length ? showMap(result, varied, unit) : null;
   showEdges(result, unit);
-  showCases(result.cases ?? []);
   showSoundness(result);
   showOrigin(result, result.limits_file, "Limits");
   footer(programOf(result), "This page shows one search for limits; all that it draws is in it.", result.limits_file ? `rouleau limits ${result.limits_file}` : null, "with the file of the search");

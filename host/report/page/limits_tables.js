@@ -26,13 +26,3 @@ function showEdges(result, unit) {
   if (trials.length) page.append(element("details", {}, element("summary", {}, `All ${trials.length} trials`), table([...varied.map(axis => ({title: axis.name, value: r => r.labels[axis.name] ?? ""})),
     value("Value", "value", "–"), {title: "End", value: r => (r.end ?? "").replace("_", " ")}, {title: "Reason", value: r => r.reason ?? ""}, {title: "Step", key: "step", number: true}], trials, {sortable: true})));
 }
-
-const isWrong = verdict => /wrong/i.test(verdict ?? "");
-function showCases(cases) {
-  if (!cases.length) return;
-  const expected = {stops: "a stop with a reason", right: "the right answer", either: "either"};
-  section("Extreme cases", table([{title: "Case", key: "name", mark: () => "broad"}, {title: "Verdict", key: "verdict", mark: r => isWrong(r.verdict) ? "over" : r.as_expected === false ? "near" : ""},
-    {title: "Expected", value: r => expected[r.expect] ?? r.expect ?? "", mark: r => r.as_expected === false ? "near" : ""}, {title: "What happened", value: r => r.outcome ?? "", mark: () => "broad"},
-    {title: "What to change", value: r => r.failure?.remedy ?? "", mark: () => "broad"}], cases, {stacked: true}),
-    note("A case passes if it gives the right answer, or stops with a reason before it writes wrong results. Anything else is WRONG. A case that did not end as expected is marked too."));
-}

@@ -27,11 +27,9 @@ LimitsFile file_with_parameter() {
 
 }  // namespace
 
-TEST_CASE("limits.json fits its schema, with edges, without, and with cases", "[limits_files]") {
+TEST_CASE("limits.json fits its schema, with edges and without", "[limits_files]") {
   LimitsFile limits = file_with_parameter();
-  const ExtremeCase extreme{"flat", "stops", {}, 10, {}};
-  limits.cases = {extreme};
-  LimitsState state{&limits, {}, {}, "now", ""};
+  LimitsState state{&limits, {}, "now", ""};
   const auto validated = [&state] {
     Json result = limits_json(state);
     CHECK_NOTHROW(validate(Document::parse(result.dump(), "limits.json"), limits_result_schema()));
@@ -45,7 +43,6 @@ TEST_CASE("limits.json fits its schema, with edges, without, and with cases", "[
   CombinationResult none{
       Point{{1}}, {{{StabilityEdge::Direction::above, {}, 1e-6}}, {1e-6}, {}, true}, {{1e-6, failed_at(3)}}};
   state.combinations = {found, none};
-  state.cases = {{&extreme, failed_at(4), "stopped with a reason", "it stopped", true}};
   state.finished = "later";
   const Json result = validated();
   CHECK(result["complete"] == true);
@@ -55,9 +52,8 @@ TEST_CASE("limits.json fits its schema, with edges, without, and with cases", "[
   REQUIRE(result["warnings"].size() == 1);
   CHECK(result["warnings"][0].get<std::string>().find("0.01 (stable)") != std::string::npos);
   const std::string csv = limits_csv(result), text = limits_text(result);
-  CHECK(csv.find("edge,stiffness,explicit,above,0.0001,0.0002,N/m,,,node_step,7\n") != std::string::npos);
+  CHECK(csv.find("stiffness,explicit,above,0.0001,0.0002,N/m,node_step,7\n") != std::string::npos);
   CHECK(csv.find("\"auto, semi\"") != std::string::npos);
-  CHECK(csv.find("case,flat,,,,,,stops,stopped with a reason,node_step,4\n") != std::string::npos);
   CHECK(text.find("stable up to 0.0001 N/m, fails at 0.0002 N/m: node_step at step 7") != std::string::npos);
   CHECK(text.find("stable nowhere") != std::string::npos);
 }

@@ -110,8 +110,6 @@ TEST_CASE("what is no number in a frame has been written, also where the run was
   CHECK(run.reason() == "no_number_written");
   CHECK(run.judged().failure["message"] ==
         "/frames/000000/fields/density of frames.h5 holds a value that is no number");
-  // An extreme case may stop, but not like this.
-  CHECK(judge_case(ExtremeCase{"a case", "either", {}, 0, {}}, run.judged(), run.folder).verdict == "WRONG");
 }
 
 TEST_CASE("what the run tells of its failure is passed on", "[judgement]") {
@@ -130,28 +128,4 @@ TEST_CASE("a hang, a crash and a refusal are failures with the words there are",
   run.result.message = "words";
   CHECK(run.reason() == to_string(end));
   CHECK(run.judged().failure["message"] == "words");
-  ExtremeCase extreme{"a case", "either", {}, 0, {}};
-  const CaseResult result = judge_case(extreme, run.judged(), run.folder);
-  CHECK(result.verdict == (end == TrialEnd::refused ? "stopped with a reason" : "WRONG"));
-  CHECK(result.as_expected == (end == TrialEnd::refused));
-}
-
-TEST_CASE("a right answer is compared with the last row of its cell", "[judgement]") {
-  const RunToJudge run;
-  const auto verdict = [&run](const RightAnswer& answer, const char* expect = "right") {
-    const ExtremeCase extreme{"a case", expect, {}, 0, answer};
-    return judge_case(extreme, run.judged(), run.folder).verdict;
-  };
-  CHECK(verdict({"cells", "deformation", "", 0, 0.5, 1e-6}) == "right answer");
-  CHECK(verdict({"cells", "deformation", "", 1, 0.7, 1e-6}) == "right answer");
-  CHECK(verdict({"cells", "deformation", "", 0, 0.7, 0.1}) == "WRONG");
-  CHECK(verdict({"cells", "angle_rad", "", 0, 0, 1}) == "WRONG");
-  CHECK(verdict({"cells", "no_such", "", 0, 0, 1}) == "WRONG");
-}
-
-TEST_CASE("a case that ends otherwise than expected is not as expected", "[judgement]") {
-  const RunToJudge run;
-  const ExtremeCase stops{"a case", "stops", {}, 0, {}}, right{"another", "right", {}, 0, {}};
-  CHECK_FALSE(judge_case(stops, run.judged(), run.folder).as_expected);
-  CHECK(judge_case(right, run.judged(), run.folder).as_expected);
 }
