@@ -154,25 +154,6 @@ void install_plugins(const fs::path& folder, const plugin::Catalog& catalog, boo
   }
 }
 
-void compare_with_index(const fs::path& index, const plugin::Catalog& catalog) {
-  const plugin::Collection collection = plugin::read_collection(index);
-  std::cout << printable(collection.title) << '\n';
-  std::vector<std::string> differing;
-  for (const plugin::CollectedPlugin& plugin : collection.plugins) {
-    const plugin::Found found = plugin::compare(plugin, catalog.manifests());
-    const char* words = found == plugin::Found::nowhere         ? "not installed"
-                        : found == plugin::Found::same          ? "installed"
-                        : found == plugin::Found::other_version ? "installed in another version"
-                                                                : "DIFFERS: installed with another manifest";
-    std::cout << "  " << plugin.kind << ' ' << plugin.id << ' ' << printable(plugin.version) << "  " << words << '\n';
-    if (found == plugin::Found::differs) differing.push_back(plugin.id);
-  }
-  if (differing.empty()) return;
-  throw Error(Cause::plugin_refused, Place{index.string()},
-              "what is installed is not what the index has under the same id and version: " + listed(differing) +
-                  "\n  install the archive of the index, or ask who changed the plugin");
-}
-
 void lock_scene(const std::filesystem::path& scene_file, const std::vector<std::filesystem::path>& plugin_dirs,
                 const std::filesystem::path& out) {
   const scene::Scene scene = plan::read_unpacked_scene(scene_file).scene;

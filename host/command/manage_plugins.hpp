@@ -1,5 +1,4 @@
-// Plugins of the user's own folder: rouleau plugins --install DIR; what a published collection has of those that are
-// there: rouleau plugins --index FILE; and the lock of a scene: rouleau plugins --lock SCENE.
+// Plugins of the user's own folder: rouleau plugins --install DIR; and the lock of a scene: rouleau plugins --lock SCENE.
 #pragma once
 
 #include <filesystem>
@@ -15,10 +14,6 @@ namespace rouleau::command {
 /// has put there. Throws Error(bad_input) for a folder without plugins, and for an id that is taken;
 /// Error(plugin_refused) for a plugin that does not conform; Error(input_output).
 void install_plugins(const std::filesystem::path& folder, const plugin::Catalog& catalog, bool overwrite);
-
-/// Prints of each entry of an index whether it is installed, and as what. Throws Error(plugin_refused) where a plugin
-/// has the version of the index and is not what the index says.
-void compare_with_index(const std::filesystem::path& index, const plugin::Catalog& catalog);
 
 /// Writes to `out` (empty: beside the scene), whole or not at all, and prints what is locked. Throws Error as for a
 /// run: bad_input for a wrong scene, plugin_refused for a plugin that cannot be used, input_output.

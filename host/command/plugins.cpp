@@ -1,5 +1,5 @@
 // rouleau plugins [ID]: what models were found, and everything their manifests say; --lock SCENE binds a scene to them,
-// --install DIR puts more of them into the user's own folder, --index FILE compares them with a published collection.
+// --install DIR puts more of them into the user's own folder.
 #include <algorithm>
 #include <iostream>
 
@@ -28,9 +28,6 @@ With the ID of a model: its parameters, units, defaults and limits. No library i
 With --install DIR: copies the plugins of DIR, manifest and library of each, into your own folder, rouleau/plugins in
 XDG_DATA_HOME or ~/.local/share, where every run finds them. They must pass the checks of "rouleau conform --level
 interface", and an id must not be taken. To take one out again, delete its folder.
-
-With --index FILE: compares what is installed with the index of a collection that somebody publishes. Exit code 3 where
-a plugin has the id and version of an entry, but another manifest. Nothing is downloaded.
 
 With --cells: lists the cells that are shipped, which a cell type takes by "from"; with the name of one its values, and
 the source and the spread of each.
@@ -259,7 +256,7 @@ void require_one(const std::vector<std::pair<std::string, bool>>& asked) {
 
 int plugins_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
-  std::string id, scene, out, install, index;
+  std::string id, scene, out, install;
   std::vector<std::string> plugin_dirs;
   bool as_json = false, overwrite = false, paths = false, cells = false;
   options::options_description description("options");
@@ -274,21 +271,18 @@ int plugins_command(const std::vector<std::string>& arguments) {
       "out", options::value(&out)->value_name("FILE")->notifier(not_empty("--out")), "with --lock: write it there");
   description.add_options()("install", options::value(&install)->value_name("DIR")->notifier(not_empty("--install")),
                             "copy the plugins of this folder into your own")(
-      "overwrite", options::bool_switch(&overwrite), "with --install: replace those of the same id there")(
-      "index", options::value(&index)->value_name("FILE")->notifier(not_empty("--index")),
-      "compare with the index of a collection");
+      "overwrite", options::bool_switch(&overwrite), "with --install: replace those of the same id there");
   positional.add("id", 1);
   if (!parse_command_line("plugins", plugins_help, arguments, description, positional)) return 0;
 
   const std::vector<std::filesystem::path> named(plugin_dirs.begin(), plugin_dirs.end());
-  if (cells && scene.empty() && install.empty() && index.empty()) {
+  if (cells && scene.empty() && install.empty()) {
     list_cells(id, as_json);
     return exit_code::done;
   }
   require_one({{"the ID of a model", !id.empty()},
                {"--lock", !scene.empty()},
                {"--install", !install.empty()},
-               {"--index", !index.empty()},
                {"--cells", cells}});
   if (overwrite && install.empty())
     throw Error(Cause::bad_input, "rouleau plugins: --overwrite goes with --install DIR");
@@ -303,10 +297,6 @@ int plugins_command(const std::vector<std::string>& arguments) {
   const plugin::Catalog catalog(plugin::plugin_search_path(named, {}));
   if (!install.empty()) {
     install_plugins(install, catalog, overwrite);
-    return exit_code::done;
-  }
-  if (!index.empty()) {
-    compare_with_index(index, catalog);
     return exit_code::done;
   }
   const units::Units units;

@@ -1,4 +1,4 @@
-// A scene's lock, and the index of a collection: plugins of which somebody has written down what they were.
+// A scene's lock: plugins of which somebody has written down what they were.
 #pragma once
 
 #include <filesystem>
@@ -49,30 +49,5 @@ Lock read_lock(const std::filesystem::path& file, const std::string& renewal);
 /// Throws Error(plugin_refused) at `place` of the scene for a plugin that the lock does not hold or whose kind, version
 /// or manifest differ from it. Its library is compared when it is opened.
 void require_locked(const Lock& lock, const Manifest& manifest, const Place& place);
-
-struct CollectedPlugin {
-  std::string id, kind, version;
-  std::string manifest_sha256;
-};
-
-struct Collection {
-  std::string title;
-  std::vector<CollectedPlugin> plugins;
-};
-
-/// The schema of an index.
-const nlohmann::json& collection_schema();
-/// Throws Error(input_output) for an index that cannot be read, Error(bad_input) with the place for one that is damaged
-/// or has a version of a plugin twice.
-Collection read_collection(const std::filesystem::path& file);
-
-/// What an entry of the index is beside the manifest that was found under its id.
-enum class Found {
-  nowhere,        ///< nobody offers the id
-  same,           ///< the manifest of the index
-  other_version,  ///< another version
-  differs         ///< the version of the index, with another manifest or of another kind
-};
-Found compare(const CollectedPlugin& plugin, const std::vector<Manifest>& manifests);
 
 }  // namespace rouleau::plugin

@@ -185,30 +185,6 @@ class Plugins_of_the_users_own(TrustCase):
         self.assert_stops(self.call("plugins", "--install", self.offered), 3, "rouleau conform", "--level interface")
         self.assertFalse(self.data.exists())
 
-    def test_are_compared_with_the_index_of_a_collection(self):
-        manifest = (self.offered / "morse.json").read_bytes()
-        entry = {"id": "morse", "kind": "interaction", "version": json.loads(manifest)["version"],
-                 "url": "https://example.org/morse.tar.gz", "sha256": "0" * 64, "doi": "10.1000/182",
-                 "manifest_sha256": hashlib.sha256(manifest).hexdigest()}
-        file = self.path / "index.json"
-
-        def compared(*entries):
-            file.write_text(json.dumps({"collection": 1, "title": "All", "plugins": entries}))
-            return self.call("plugins", "--index", file)
-
-        self.assertIn("not installed", compared(entry).stdout)
-        self.assertEqual(self.call("plugins", "--install", self.offered).returncode, 0)
-        result = compared(entry, {**entry, "version": "0.0.1"})
-        self.assertEqual((result.returncode, result.stderr), (0, ""))
-        self.assertIn("  installed\n", result.stdout)
-        self.assertIn("installed in another version", result.stdout)
-        result = compared({**entry, "manifest_sha256": "1" * 64})
-        self.assertEqual(result.returncode, 3, result.stderr)
-        self.assertIn("morse", result.stderr)
-        self.assertIn("DIFFERS", result.stdout)
-        self.assert_stops(compared(entry, entry), 2, "/plugins/1/version", "twice")
-        self.assert_stops(compared({**entry, "doi": "doi:10.1/2"}), 2, "/plugins/0/doi")
-
 
 class Open_folders_are_refused(TrustCase):
     def test_a_plugin_that_every_user_could_replace_is_listed_as_refused_and_stops_a_scene_that_names_it(self):
@@ -325,7 +301,7 @@ class A_lock_binds_a_scene_to_its_plugins(TrustCase):
         self.assert_stops(self.rouleau.run("plugins", "morse", "--lock", self.file), 2, "the ID of a model")
         self.assert_stops(self.rouleau.run("plugins", "--json", "--lock", self.file), 2, "--json")
         self.assert_stops(self.rouleau.run("plugins", "--out", "x"), 2, "--lock")
-        self.assert_stops(self.rouleau.run("plugins", "--install", "x", "--index", "y"), 2, "--install, --index")
+        self.assert_stops(self.rouleau.run("plugins", "--install", "x", "--lock", "y"), 2, "--lock, --install")
         self.assert_stops(self.rouleau.run("plugins", "--overwrite"), 2, "--install")
 
 

@@ -275,11 +275,6 @@ def study(test, block):
     test.call(PROGRAM, "study", "study.json", "--budget", "1s", "--repeats", "1", "--quiet")
 
 
-def index_of_a_collection(test, block):
-    (test.folder / "index.json").write_text(block.text)
-    test.assertIn("org.example.yukawa 1.0.0  not installed", test.call(PROGRAM, "plugins", "--index", "index.json"))
-
-
 def fuzz_target(test, block):
     (test.folder / "target.cpp").write_text(block.text.replace("some_schema", "SCHEMA_OF_ITS_OWN"))
     test.call(COMPILER, "-std=c++20", "-fsyntax-only", "-Wno-psabi", *[f"-I{SOURCE}/{f}" for f in ("host", "tests/fuzz", "sdk/include")],
@@ -339,7 +334,6 @@ BLOCKS = [
     ("docs/python.md", "scene = {", "run by tests/python/check_notebooks.py, block after block"),
     ("docs/resume.md", "import h5py", lambda test, block: ast.parse(block.text)),
     ("docs/simulation.md", "import rouleau", lambda test, block: ast.parse(block.text)),
-    ("docs/trust.md", '{\n  "collection": 1', index_of_a_collection),
     ("docs/testing.md", "// Locks:", fuzz_target),
     ("docs/walls.md", '"walls": { "within"', "of scenes/couette-cylinders.json"),
     ("docs/walls.md", '"output": {', "needs walls of a shape; tests/python/check_reading.py reads such a run"),

@@ -85,7 +85,6 @@ std::vector<std::unique_ptr<Judges>> all_judges() {
   add("scene", scene::scene_schema());
   add("manifest", plugin::manifest_schema());
   add("lock", plugin::lock_schema());
-  add("collection", plugin::collection_schema());
   add("study", study::study_schema());
   add("limits file", stability::limits_schema());
   add("study's result", study::study_result_schema());
@@ -101,7 +100,7 @@ std::vector<Document> one_of_each() {
     documents.push_back(Document::read(source / file));
   const std::string hash(64, 'a');
   documents.push_back(Document::parse(plugin::lock_text({{"trt", "collision", "1.0.0", hash, hash}}), "a.lock.json"));
-  for (const char* file : {"tests/schemas/collection.json", "studies/biconcave.json", "limits/adhesion.json"})
+  for (const char* file : {"studies/biconcave.json", "limits/adhesion.json"})
     documents.push_back(Document::read(source / file));
   return documents;
 }
@@ -256,9 +255,9 @@ TEST_CASE("the shipped schemas are draft 7") {
   }
 }
 
-TEST_CASE("the schemas of a scene, a manifest, a lock and a collection close every object and document every key") {
+TEST_CASE("the schemas of a scene, a manifest and a lock close every object and document every key") {
   for (const auto* schema :
-       {&scene::scene_schema(), &plugin::manifest_schema(), &plugin::lock_schema(), &plugin::collection_schema()}) {
+       {&scene::scene_schema(), &plugin::manifest_schema(), &plugin::lock_schema()}) {
     walk(*schema, "", [&](const Json& rule, const std::string& pointer) {
       INFO(pointer);
       if (!rule.is_object() || !rule.contains("properties") || !rule["properties"].is_object()) return;
