@@ -12,7 +12,7 @@ class Rouleau(CMakePackage):
     license("MIT")
 
     version("main", branch="main")
-    version("0.2.0", tag="v0.2.0")
+    version("0.3.0", tag="v0.3.0")
 
     variant("mpi", default=False, description="Runs on several machines")
     variant("python", default=True, description="The Python package, and stepping from Python")
@@ -21,7 +21,7 @@ class Rouleau(CMakePackage):
     depends_on("cxx", type="build")
     depends_on("cmake@3.25:", type="build")
     depends_on("pkgconfig", type="build")
-    depends_on("python@3.9:", type=("build", "run"))
+    depends_on("python@3.11:", type=("build", "run"))
     depends_on("nlohmann-json@3.11:")
     depends_on("boost@1.74: +program_options")
     depends_on("eigen@3.4:")

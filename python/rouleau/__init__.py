@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from .shapes import mask as mask, outline as outline, polygons as polygons, vessel as vessel
     from .sweeping import sweep as sweep
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"
 
 _HOME = {
     "calibrate": "calibrating", "Calibration": "calibrating",

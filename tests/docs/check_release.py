@@ -142,6 +142,18 @@ class Release(unittest.TestCase):
         self.assertIn(f"    title: {article['name']}\n", citation)
 
 
+    def test_earlier_versions_stand_at_commits_of_their_number(self):
+        rows = re.findall(r"^\| (\d+\.\d+\.\d+) \| `([0-9a-f]{8})` \|", (SOURCE / "CONTRIBUTING.md").read_text(), re.MULTILINE)
+        self.assertEqual([version for version, _ in rows], ["0.1.0", "0.2.0"])
+        if not (SOURCE / ".git").exists():
+            self.skipTest("this source has no history")
+        for version, commit in rows:
+            shown = subprocess.run(["git", "show", f"{commit}:CMakeLists.txt"], cwd=SOURCE, capture_output=True, text=True)
+            if shown.returncode != 0:
+                self.skipTest("the history does not reach so far back")
+            self.assertIn(f"project(Rouleau VERSION {version} ", shown.stdout)
+
+
 class Recipes(unittest.TestCase):
     """What can be known of them without conda and spack: their form, and that what they name is there."""
 
@@ -155,6 +167,9 @@ class Recipes(unittest.TestCase):
         for component in re.findall(r"--component (\w+)", conda):
             self.assertTrue(re.search(rf"COMPONENT {component}\b", build), component)
         compile(spack, "package.py", "exec")
+        wanted = re.search(r"Python (3\.\d+) \(for man page and completions\)", (SOURCE / "docs/install.md").read_text())[1]
+        self.assertIn(f'depends_on("python@{wanted}:"', spack)
+        self.assertEqual(conda.count(f"    - python >={wanted}\n"), 2)
 
     def test_the_conda_recipe_is_yaml(self):
         try:
