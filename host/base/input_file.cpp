@@ -4,14 +4,17 @@
 #include <sha2.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "error.hpp"
+#include "synonyms.hpp"
 
 namespace rouleau {
 
@@ -47,6 +50,20 @@ Remedy remedy(int error) {
     default:
       return {"check the disk, or write to another one", {Way::elsewhere}};
   }
+}
+
+/// Of a file that is not there: the name of what lies where the path goes wrong and is called nearly so.
+std::string meant(const std::filesystem::path& file) {
+  constexpr std::size_t looked_at = 10000;
+  std::error_code ignored;
+  std::filesystem::path at = std::filesystem::absolute(file, ignored);
+  while (at.has_relative_path() && !std::filesystem::exists(at.parent_path(), ignored)) at = at.parent_path();
+  std::vector<std::string> names;
+  std::filesystem::directory_iterator entry(at.parent_path(), ignored);
+  for (; entry != std::filesystem::directory_iterator() && names.size() < looked_at; entry.increment(ignored))
+    names.push_back(entry->path().filename().string());
+  std::sort(names.begin(), names.end());
+  return did_you_mean(at.filename().string(), names);
 }
 
 }  // namespace
@@ -112,11 +129,12 @@ void fail_file(const std::filesystem::path& file, const std::string& what, int e
 }
 
 void fail_reading(const std::filesystem::path& file, int error) {
-  throw Error(Cause::input_output, Place{file.string()},
-              "this file cannot be read: " + std::generic_category().message(error),
-              {error == ENOENT   ? "bring the file back, or check the path"
-               : error == EACCES ? "see to it that you may read it (ls -l)"
-                                 : ""});
+  throw Error(
+      Cause::input_output, Place{file.string()},
+      "this file cannot be read: " + std::generic_category().message(error) + (error == ENOENT ? meant(file) : ""),
+      {error == ENOENT   ? "bring the file back, or check the path"
+       : error == EACCES ? "see to it that you may read it (ls -l)"
+                         : ""});
 }
 
 std::string sha256(const std::filesystem::path& file) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "base/error.hpp"
 #include "base/input_file.hpp"
@@ -67,8 +68,11 @@ CellColumns::CellColumns(const std::vector<std::string>& names, const units::Uni
   for (const int k : {0, 1}) {
     if (place[k]) continue;
     const std::string name(1, axis_names[k]);
-    refuse(std::nullopt, "there is no column " + name + " with its unit\nname one, such as \"" + name + "_um\" or \"" +
-                             name + "_m\"; it has: " + listed(names));
+    std::vector<std::string> meant;
+    std::copy_if(names.begin(), names.end(), std::back_inserter(meant),
+                 [&](const std::string& text) { return small_letters(text).starts_with(name); });
+    refuse(std::nullopt, "there is no column " + name + " with its unit" + did_you_mean(name + "_um", meant) +
+                             "\nname one, such as \"" + name + "_um\" or \"" + name + "_m\"; it has: " + listed(names));
   }
   for (int k = 0; k < 3; ++k) {
     if (axis[k] || (!axis[0] && !axis[1] && !axis[2])) continue;

@@ -30,6 +30,13 @@ TEST_CASE("pipes, devices and folders are refused at once, and so is more than t
   CHECK_THAT(refused("/dev/zero", any_size).second, Contains("it is a device"));
   CHECK_THAT(refused(folder.path(), any_size).second, Contains("it is a directory"));
   CHECK_THAT(refused(folder.path() / "none", any_size).second, Contains("No such file") && Contains("check the path"));
+  folder.write("four-cells.json", "{}");
+  CHECK_THAT(refused(folder.path() / "fuor-cells.json", any_size).second,
+             Contains("No such file or directory; did you mean \"four-cells.json\"?"));
+  CHECK_THAT(refused(folder.path() / "four-cells", any_size).second, Contains("did you mean \"four-cells.json\"?"));
+  std::filesystem::create_directory(folder.path() / "scenes");
+  CHECK_THAT(refused(folder.path() / "scene/demo/a.json", any_size).second, Contains("did you mean \"scenes\"?"));
+  CHECK_THAT(refused(folder.path() / "zzz.txt", any_size).second, !Contains("did you mean"));
   folder.write("sparse", "x");
   std::filesystem::resize_file(sparse, std::uintmax_t{20} << 30U);
   CHECK(refused(sparse, largest_input).first == Cause::bad_input);

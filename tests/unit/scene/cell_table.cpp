@@ -156,7 +156,8 @@ TEST_CASE("a fault of a table names line, column, value and remedy") {
   is(fault("type,x_s,y_um\nrbc,1,2\n"), "1:6", "a time", "m");
   is(fault("type,x_um,x_m,y_um\nrbc,1,2,3\n"), "1:11", "both x", "leave one");
   is(fault("type,type,x_um,y_um\nrbc,rbc,2,3\n"), "1:6", "there twice", "leave one");
-  is(fault("type,x_um\nrbc,1\n"), "1:1", "no column y", "y_um");
+  is(fault("type,x_um\nrbc,1\n"), "1:1", "no column y with its unit\n", "y_um");
+  is(fault("type,x_um,yum\nrbc,1,1\n"), "1:1", "did you mean \"yum\"?", "y_um");
   is(fault("x_um,y_um\n1,2\n"), "1:1", "no column \"type\"", "rbc, capsule");
   is(fault("step,type,x_um,y_um\n7,rbc,1,2\n3,rbc,1,2\n"), "3:1", "comes after step 7", "sort");
   is(fault("type,x_um,y_um\n"), "0:0", "no cells", "header");
