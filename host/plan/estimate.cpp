@@ -232,6 +232,12 @@ Estimate estimate(const Plan& plan) {
                                (plan.viscosity_contrast || !scene.fluid.layers.empty() ? 1 : 0)) +
                           membrane_memory(scene);
   estimate.output = estimate_output(scene, plan.stages);
+  if (scene.output.checkpoint_seconds) {  // of all nodes of the box, and places and velocities of membranes
+    double all = 1;
+    for (int axis = 0; axis < dimension; ++axis) all *= scene.domain.nodes[axis];
+    estimate.output.checkpoint_bytes =
+        all * velocities * word + membrane * dimension * (plan.viscosity_contrast ? 3 : 2) * sizeof(double);
+  }
   estimate.wall_s += estimate.output.outputs * membrane * cost::of_membrane_node[dimension - 2].output;
   return estimate;
 }

@@ -30,10 +30,11 @@ struct OutputEstimate {
   double frames_bytes = 0;                ///< frames.h5; of compressed fields what they would take without compression
   double fields_bytes = 0;                ///< the part of it that compression makes smaller
   double tables_bytes = 0;                ///< the .csv files, to about a quarter
+  double checkpoint_bytes = 0;            ///< of one, without what models remember; the one before it is kept beside it
   bool fields_compressed = false;
   [[nodiscard]] double bytes() const { return frames_bytes + tables_bytes; }
   NLOHMANN_DEFINE_TYPE_INTRUSIVE(OutputEstimate, outputs, field_outputs, frames_bytes, fields_bytes, tables_bytes,
-                                 fields_compressed)
+                                 checkpoint_bytes, fields_compressed)
 };
 
 struct Estimate {

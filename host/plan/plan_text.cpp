@@ -72,7 +72,9 @@ void write_choice(std::ostringstream& out, const NumericsChoice& choice, bool kn
 void write_output(std::ostringstream& out, const scene::Scene& scene, const OutputEstimate& output) {
   out << "Output: at most " << size(output.frames_bytes) << " in frames.h5 (" << formatted(output.outputs, "%.0f")
       << " frames, " << formatted(output.field_outputs, "%.0f") << " with fields), about " << size(output.tables_bytes)
-      << " in the tables\n";
+      << " in the tables";
+  if (output.checkpoint_bytes > 0) out << ", " << size(output.checkpoint_bytes) << " in a checkpoint";
+  out << "\n";
   if (output.fields_compressed)
     out << "  " << size(output.fields_bytes) << " of it are fields, which compression makes smaller by an unknown "
         << "factor\n";

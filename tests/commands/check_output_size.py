@@ -38,6 +38,7 @@ CASES = [
     ("fields of a region", CELLS,
      {"cells": {"strain": 0.01}, "fields": {"strain": 0.01, "quantities": ALL, "compression": 0} | REGION}, 0.03),
     ("compressed fields", CELLS, {"cells": {"strain": 0.02}, "fields": {"strain": 0.02, "quantities": ALL}}, None),
+    ("cells with a checkpoint", CELLS, {"cells": {"strain": 0.02}, "checkpoint": {"seconds": 600}}, 0.08),
     ("compressed fields of a region", FLUID,
      {"fields": {"strain": 0.02, "quantities": ALL, "compression": 9, "precision": "f64"} | REGION}, None),
 ]
@@ -50,21 +51,25 @@ def main() -> int:
         for name, scene, output, tolerance in CASES:
             file, directory = pathlib.Path(scratch) / "scene.json", pathlib.Path(scratch) / name
             # A frames.h5 that is put together of segments, as with checkpoints, has up to 400 bytes a frame less.
-            file.write_text(json.dumps(scene | {"output": output | {"checkpoint": "never"}}))
+            file.write_text(json.dumps(scene | {"output": {"checkpoint": "never"} | output}))
             plan = json.loads(subprocess.run([program, "plan", file, "--json"], check=True, capture_output=True).stdout)
             subprocess.run([program, "run", file, "--out", directory], check=True, capture_output=True)
             expected = plan["estimate"]["output"]
-            frames = (directory / "frames.h5").stat().st_size
+            frames = sum(file.stat().st_size for file in directory.glob("frames*.h5"))
             tables = sum(table.stat().st_size for table in directory.glob("*.csv"))
             rows = len((directory / "series.csv").read_text().splitlines()) - 1
             ratios = expected["frames_bytes"] / frames, expected["tables_bytes"] / tables
             good = expected["outputs"] == rows and abs(ratios[1] - 1) < 0.25  # numbers have 3 to 17 digits
             good = good and (ratios[0] >= 1 if tolerance is None else abs(ratios[0] - 1) < max(tolerance, 8000 / frames))
             good = good and expected["fields_compressed"] == (tolerance is None)
+            checkpoints = [file.stat().st_size for file in directory.glob("checkpoint*.h5")]
+            good = good and bool(checkpoints) == ("checkpoint" in output) == (expected["checkpoint_bytes"] > 0)
+            good = good and all(abs(expected["checkpoint_bytes"] - size) < 0.05 * size + 40_000 for size in checkpoints)
             good = good and json.loads((directory / "summary.json").read_text())["output_estimate"] == expected
             failed += not good
+            words = "".join(f", checkpoint {size} (expected {expected['checkpoint_bytes']:.0f})" for size in checkpoints)
             print(f"{'passed' if good else 'FAILED'}  {name}: {rows} rows (expected {expected['outputs']:.0f}), frames.h5 "
-                  f"{frames} (expected over that: {ratios[0]:.3f}), tables {tables} ({ratios[1]:.3f})")
+                  f"{frames} (expected over that: {ratios[0]:.3f}), tables {tables} ({ratios[1]:.3f}){words}")
     return 1 if failed else 0
 
 
