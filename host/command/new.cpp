@@ -47,7 +47,7 @@ and in three
   red-cell-3d    a red cell in shear flow
   doublet-3d     two red cells that stick together and are sheared
   suspension-3d  red cells packed at random between walls that shear them
-  tube-3d        plasma in a tube, without cells
+  tube-3d        red cells in a tube, carried along by the flow
 
 Example:
   rouleau new interaction org.example.yukawa

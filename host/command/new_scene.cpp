@@ -40,17 +40,21 @@ const std::array scene_templates{
     SceneTemplate{"drawing", drawing_scene, &drawing_picture},
 };
 
+std::vector<std::string> template_names() {
+  std::vector<std::string> names;
+  for (const SceneTemplate& entry : scene_templates) names.emplace_back(entry.name);
+  return names;
+}
+
 bool is_template(const std::string& name) {
-  return std::any_of(scene_templates.begin(), scene_templates.end(),
-                     [&](const SceneTemplate& entry) { return name == entry.name; });
+  const auto names = template_names();
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 const SceneTemplate& template_called(const std::string& name) {
-  std::vector<std::string> names;
-  for (const SceneTemplate& entry : scene_templates) {
+  const std::vector<std::string> names = template_names();
+  for (const SceneTemplate& entry : scene_templates)
     if (name == entry.name) return entry;
-    names.emplace_back(entry.name);
-  }
   throw Error(Cause::bad_input, "rouleau new scene: there is no template " + in_quotes(name) +
                                     did_you_mean(name, names) + "\n  the templates are: " + listed(names));
 }
@@ -127,6 +131,9 @@ void new_scene(const fs::path& folder, const std::string& name, const std::strin
             << " from the template " << template_name << ": " << about(file) << ". It runs as it is.\n";
   if (file.stem().string().ends_with("-3d") && !std::string_view(template_name).ends_with("-3d"))
     std::cout << "Its name ends in -3d, but it has two dimensions: rouleau new --help lists the templates in three.\n";
+  const std::string meant = likely(file.stem().string(), template_names());
+  if (template_name == "demo" && !meant.empty() && meant != template_name)
+    std::cout << "That is its name. If a template was meant: rouleau new scene " << meant << '\n';
   std::cout << "Next:\n"
             << "  rouleau plan " << scene << "\n  rouleau run " << scene << " --out "
             << in_shell("runs/" + file.stem().string()) << '\n';

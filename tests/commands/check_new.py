@@ -175,7 +175,7 @@ class Shipped_cells(Case):
 class New_scene(Case):
     TEMPLATES = {"demo": "two dimensions, 2 cells", "channel": "two dimensions, 14 cells", "suspension": "two dimensions, 17 cells",
                  "capsule": "two dimensions, 1 cell,", "vessel": "two dimensions, 13 cells", "drawing": "two dimensions, 14 cells", "suspension-3d": "three dimensions, 14 cells",
-                 "red-cell-3d": "three dimensions, 1 cell,", "doublet-3d": "three dimensions, 2 cells", "tube-3d": "three dimensions, no cells"}
+                 "red-cell-3d": "three dimensions, 1 cell,", "doublet-3d": "three dimensions, 2 cells", "tube-3d": "three dimensions, 4 cells"}
 
     def test_of_each_template_plans_and_runs_as_it_is(self):
         for template, about in self.TEMPLATES.items():
@@ -216,6 +216,9 @@ class New_scene(Case):
                 self.new("scene", *words)
                 self.assertEqual((self.desk / f"{file}.json").read_text(), shipped[template])
         self.assertIn("Its name ends in -3d, but it has two dimensions", self.new("scene", "mine-3d"))
+        self.assertIn("If a template was meant: rouleau new scene suspension-3d\n", self.new("scene", "suspention-3d"))
+        for words in (("first-too",), ("channels", "channel")):
+            self.assertNotIn("was meant", self.new("scene", *words))
         self.assert_stops(self.call("new", "scene", "capsule", "channel"), 2, "both", "new scene channel --name capsule")
         self.assert_stops(self.call("new", "scene", "capsul", "--name", "x"), 2, 'did you mean "capsule"?')
         self.assert_stops(self.call("new", "interaction", "org.example.x", "--name", "y"), 2, "for scenes only")
