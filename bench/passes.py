@@ -22,7 +22,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 SUSPENSION = {"/numerics/kernel": '"sharp6"', "/numerics/slip_correction": "true", "/numerics/area_correction": "true"}
 SCENES = {  # name: file, what is set, steps counted
-    "capsule": ("scenes/capsule-3d.json", {}, (10, 30)),
+    "capsule": ("tests/physics/scenes/plain-capsule-3d.json", {}, (10, 30)),
     "doublet": ("scenes/doublet-3d.json", {}, (10, 30)),
     "suspension": ("scenes/suspension-3d.json", SUSPENSION, (4, 12)),
     "slit": ("scenes/slit-3d.json", {}, (10, 30)),

@@ -17,7 +17,7 @@ namespace {
 SceneRun sheared_sphere(const std::string& membrane, double strain, std::vector<std::string> changes = {}) {
   changes.push_back("/cell_types/capsule/membrane=[" + membrane + "]");
   changes.push_back("/stages/0/strain=" + std::to_string(strain));
-  return run_scene(std::string(ROULEAU_SCENES) + "/capsule-3d.json", changes);
+  return run_scene(std::string(ROULEAU_SCENES) + "/../tests/physics/scenes/plain-capsule-3d.json", changes);
 }
 
 /// Viscosity times shear rate times radius, over this capillary number, N/m.

@@ -174,7 +174,7 @@ TEST_CASE("layers that a wall shakes follow the exact solution to second order",
 
 TEST_CASE("in three dimensions a layer that fills the domain is a fluid of its viscosity, with a capsule in it",
           "[layers][space]") {
-  const std::string file = std::string(ROULEAU_SCENES) + "/capsule-3d.json";
+  const std::string file = std::string(ROULEAU_SCENES) + "/../tests/physics/scenes/plain-capsule-3d.json";
   const std::vector<std::string> small{"/domain/nodes=[24, 24, 24]", R"(/numerics/precision="f64")",
                                        "/stages/0/strain=0.5", "/cell_types/capsule/triangles=320",
                                        R"(/cell_types/capsule/interior_viscosity="6 cP")"};

@@ -47,7 +47,7 @@ SMALL["output"] = {"cells": {"strain": 0.1}, "checkpoint": {"seconds": 600}}
 
 
 # A stiff capsule in shear, in three dimensions.
-SPACE = json.loads((SOURCE / "scenes/capsule-3d.json").read_text())
+SPACE = json.loads((SOURCE / "tests/physics/scenes/plain-capsule-3d.json").read_text())
 SPACE["domain"] |= {"size": ["12 um", "9.6 um", "10.8 um"], "nodes": [40, 32, 36]}
 SPACE["cells"] = [{"type": "capsule", "at": ["5 um", "4.8 um", "5.4 um"]}]
 SPACE["cell_types"]["capsule"]["interior_viscosity"] = "6 cP"

@@ -116,7 +116,7 @@ inline std::vector<Cut<2>> cuts_for_travellers(const core::Domain<2>& domain) {
 inline Case travelling_in_space() {
   return {
       "travelling in space",
-      ROULEAU_SCENES "/capsule-3d.json",
+      ROULEAU_SCENES "/../tests/physics/scenes/plain-capsule-3d.json",
       {"/numerics/precision=\"f64\"",
        R"(/domain={"size": ["15 um", "12 um", "12 um"], "nodes": [40, 32, 32], )"
        R"("y": {"lower": {"wall": {}}, "upper": {"wall": {}}}})",
@@ -135,7 +135,8 @@ inline std::vector<Cut<3>> cuts_for_travellers(const core::Domain<3>& domain) {
 
 /// Cells in three dimensions: over borders, between walls, in a tube.
 inline std::vector<Case> scenes_in_space() {
-  const std::string doublet = ROULEAU_SCENES "/doublet-3d.json", capsule = ROULEAU_SCENES "/capsule-3d.json",
+  const std::string doublet = ROULEAU_SCENES "/doublet-3d.json",
+                    capsule = ROULEAU_SCENES "/../tests/physics/scenes/plain-capsule-3d.json",
                     f64 = "/numerics/precision=\"f64\"", plain = "/numerics/slip_correction=false";
   const auto bonds_between = [](const std::string& whom, const std::string& at = "0") {
     return "/interactions/" + at + R"(={"model": "bridging", "parameters": {"site_density": "1e12 1/m2",

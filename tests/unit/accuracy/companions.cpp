@@ -135,8 +135,8 @@ TEST_CASE("of a run with many outputs that reports moments companions have a qua
 }
 
 TEST_CASE("companions of a three-dimensional run have fewer nodes along each of three sides, and fewer triangles") {
-  const scene::Scene scene =
-      plan::read_scene(std::string(ROULEAU_SCENES) + "/capsule-3d.json", {"/domain/nodes=[64, 64, 64]"});
+  const scene::Scene scene = plan::read_scene(
+      std::string(ROULEAU_SCENES) + "/../tests/physics/scenes/plain-capsule-3d.json", {"/domain/nodes=[64, 64, 64]"});
   const Companions companions = choose_companions(scene, {.run_s = long_run_s});
   REQUIRE(companions.why_none.empty());
   CHECK(companions.order == 1);  // without slip correction

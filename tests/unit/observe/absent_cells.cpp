@@ -24,7 +24,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-const std::string space = ROULEAU_SCENES "/capsule-3d.json";
+const std::string space = ROULEAU_SCENES "/../tests/physics/scenes/plain-capsule-3d.json";
 
 /// Cells 0 and 2 touch; cell 1 lies apart from them.
 std::vector<std::string> overrides_in_plane(bool all) {

@@ -151,7 +151,7 @@ TEST_CASE("fields in bands are those of the whole lattice, in two dimensions") {
 }
 
 TEST_CASE("fields in bands are those of the whole lattice, in three dimensions and around solid nodes") {
-  const std::string capsule = ROULEAU_SCENES "/capsule-3d.json";
+  const std::string capsule = ROULEAU_SCENES "/../tests/physics/scenes/plain-capsule-3d.json";
   const auto of = [&](const std::string& walls) {
     return std::vector<std::string>{
         "/cells=[]", R"(/stages=[{"name": "driven", "pressure_gradient": "1e5 Pa/m", "duration": "1 s"}])", fields,

@@ -288,7 +288,8 @@ TEST_CASE("a gap below the distance at which cells come to rest counts no contac
 
 TEST_CASE("a plan says what walls and images add, and that a run takes hours") {
   const auto report = [](const std::vector<std::string>& changes) {
-    const scene::Scene scene = read_scene(std::string(ROULEAU_SCENES) + "/capsule-3d.json", changes);
+    const scene::Scene scene =
+        read_scene(std::string(ROULEAU_SCENES) + "/../tests/physics/scenes/plain-capsule-3d.json", changes);
     return make_report(make_plan(scene, plugins_of_reports()));
   };
   const PlanReport shipped = report({});

@@ -66,7 +66,7 @@ TEST_CASE("a mesh is part of the scene that names it") {
       "OFF\n6 8 12\n1 0 0\n-1 0 0\n0 1 0\n0 -1 0\n0 0 1\n0 0 -1\n3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n3 2 0 5\n3 1 2 5\n"
       "3 3 1 5\n3 0 3 5\n";
   const std::string file = folder.write("cell.off", octahedron).string();
-  const std::string in_space = std::string(ROULEAU_SCENES) + "/capsule-3d.json";
+  const std::string in_space = std::string(ROULEAU_SCENES) + "/../tests/physics/scenes/plain-capsule-3d.json";
   const std::string mesh =
       R"(/cell_types/capsule={"membrane": [], "shape": {"mesh": {"unit": "3 um", "file": ")" + file;
   const auto read = [&](const std::string& further) {

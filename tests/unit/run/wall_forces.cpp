@@ -115,7 +115,7 @@ Case in_space(const std::string& what, const std::string& y, const std::string& 
               std::vector<std::string> overrides) {
   overrides.push_back(R"(/domain={"size": ["12 um", "12 um", "12 um"], "nodes": [32, 32, 32], )" + domain + "}");
   overrides.push_back(R"(/cells=[{"type": "capsule", "at": ["6 um", ")" + y + R"( um", ")" + z + R"( um"]}])");
-  return {what, ROULEAU_SCENES "/capsule-3d.json", overrides};
+  return {what, ROULEAU_SCENES "/../tests/physics/scenes/plain-capsule-3d.json", overrides};
 }
 const std::string walls_y = R"("y": {"lower": {"wall": {}}, "upper": {"wall": {}}})",
                   walls_yz = walls_y + R"(, "z": {"lower": {"wall": {}}, "upper": {"wall": {}}})",
