@@ -1,9 +1,11 @@
 #include "aggregate_history.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "aggregates.hpp"
+#include "json/shown.hpp"
 
 namespace rouleau::observe {
 
@@ -15,23 +17,6 @@ std::vector<int> numbers_of(const Snapshot& snapshot) {
   std::vector<int> cells;
   for (const CellSnapshot& cell : snapshot.cells) cells.push_back(cell.cell);
   return cells;
-}
-
-/// Contacts between different cells whose types attract each other.
-std::vector<ContactSnapshot> joining(const Snapshot& snapshot,
-                                     const std::vector<std::array<std::string, 2>>& attracting) {
-  std::vector<ContactSnapshot> joins;
-  const std::vector<int> cells = numbers_of(snapshot);
-  const auto type_of = [&](int cell) -> const std::string& { return snapshot.cells[place_of(cell, cells)].type; };
-  for (const ContactSnapshot& contact : snapshot.contacts) {
-    const std::string &a = type_of(contact.cell_a), &b = type_of(contact.cell_b);
-    const auto attracts = [&](const auto& pair) {
-      return (pair[0] == a && pair[1] == b) || (pair[0] == b && pair[1] == a);
-    };
-    if (contact.cell_a != contact.cell_b && std::any_of(attracting.begin(), attracting.end(), attracts))
-      joins.push_back(contact);
-  }
-  return joins;
 }
 
 /// Cells that hang together by these contacts, each group and all groups by their smallest cell.
@@ -73,7 +58,51 @@ std::vector<std::array<int, 2>> AggregateHistory::follow_images(const std::vecto
   return met;
 }
 
-void AggregateHistory::follow(const Snapshot& snapshot, const std::vector<std::array<std::string, 2>>& attracting) {
+void AggregateHistory::follow_lives(const Snapshot& snapshot, std::vector<std::vector<int>> groups) {
+  const std::vector<int> cells = numbers_of(snapshot);
+  const auto holds = [](const std::vector<int>& all, const std::vector<int>& some) {
+    return std::includes(all.begin(), all.end(), some.begin(), some.end());
+  };
+  if (lives_.empty() || lives_.back().stage != snapshot.stage_name) {
+    lives_.push_back({snapshot.stage_name, {}});
+    for (const auto& group : last_) ++lives_.back().of_size[static_cast<int>(group.size())].seen;
+  }
+  for (const auto& group : last_) {
+    Lives& lives = lives_.back().of_size[static_cast<int>(group.size())];
+    lives.time += snapshot.time - last_time_;
+    if (std::binary_search(groups.begin(), groups.end(), group) || !holds(cells, group)) continue;
+    const bool grown = std::any_of(groups.begin(), groups.end(), [&](const auto& now) { return holds(now, group); });
+    ++(grown ? lives.grown : lives.broken);
+  }
+  for (const auto& group : groups)
+    if (!std::binary_search(last_.begin(), last_.end(), group))
+      ++lives_.back().of_size[static_cast<int>(group.size())].seen;
+  last_ = std::move(groups);
+  last_time_ = snapshot.time;
+}
+
+nlohmann::json AggregateHistory::lifetimes() const {
+  auto result = nlohmann::json::array();
+  for (const StageLives& stage : lives_) {
+    auto sizes = nlohmann::json::array();
+    for (const auto& [cells, lives] : stage.of_size) {
+      const auto [seen, broken, grown, time] = lives;
+      sizes.push_back({{"cells", cells},
+                       {"seen", seen},
+                       {"broken", broken},
+                       {"grown", grown},
+                       {"time_s", time},
+                       {"break_up_rate_per_s", json::number_or_null(broken / time)},
+                       // As of one where none broke.
+                       {"standard_error_per_s", json::number_or_null(std::sqrt(std::max(broken, 1)) / time)},
+                       {"mean_lifetime_s", json::number_or_null(time / (broken + grown))}});
+    }
+    result.push_back({{"stage", stage.stage}, {"sizes", std::move(sizes)}});
+  }
+  return result;
+}
+
+void AggregateHistory::follow(const Snapshot& snapshot) {
   count_ = snapshot.aggregate_count;
   if (snapshot.cells.empty()) return;
   AggregateEvent event{snapshot.strain, snapshot.time, snapshot.aggregate_count, {}, false};
@@ -84,11 +113,11 @@ void AggregateHistory::follow(const Snapshot& snapshot, const std::vector<std::a
     event.members[s->second].push_back(cell.cell);
     event.through_image = event.through_image || cell.through_image;
   }
-  if (!attracting.empty()) {
-    const std::vector<ContactSnapshot> joins = joining(snapshot, attracting);
-    event.joined = groups_by(joins, numbers_of(snapshot));
+  if (snapshot.attracts) {
+    event.joined = groups_by(snapshot.bonds, numbers_of(snapshot));
+    if (snapshot.cells.size() <= most_cells_remembered) follow_lives(snapshot, several(event.joined));
     if (event.joined == event.members) event.joined.clear();
-    if (snapshot.cells.size() <= most_cells_with_images) event.met_images = follow_images(joins);
+    if (snapshot.cells.size() <= most_cells_with_images) event.met_images = follow_images(snapshot.bonds);
   }
   // Cells that come alone and leave alone are no change.
   const bool changed = events_.empty() || several(events_.back().members) != several(event.members) ||

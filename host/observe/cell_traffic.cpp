@@ -122,7 +122,9 @@ RunKind kind_of(const scene::Scene& scene) {
   const bool pulled = std::any_of(scene.stages.begin(), scene.stages.end(),
                                   [](const scene::Stage& stage) { return !stage.forces.empty(); });
   RunKind kind(scene.domain.dimension(), scene.domain.is_open(), has_traffic(scene),
-               pulled || scene.fluid.gravity != scene::Vector());
+               pulled || scene.fluid.gravity != scene::Vector(),
+               std::any_of(scene.interactions.begin(), scene.interactions.end(),
+                           [](const scene::Interaction& i) { return !i.with_wall() && !i.with_self(); }));
   for (const int end : {0, 1})
     if (scene.domain.openings) kind.openings[end] = static_cast<int>(scene::open_parts(scene, end).size());
   return kind;

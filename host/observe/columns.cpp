@@ -70,6 +70,10 @@ constexpr Observable marked(Observable column) {
   return column;
 }
 
+constexpr Observable bonds_mean(Observable column) {
+  return marked<&Observable::has_means>(marked<&Observable::of_interactions>(column));
+}
+
 constexpr Observable instant_columns[] = {
     {"step", "", "number of the step, over all stages", output<&Snapshot::step>},
     {"time", "s", "simulated time since the first stage began", output<&Snapshot::time>},
@@ -97,6 +101,8 @@ constexpr Observable cell_columns[] = {
      cell<&CellSnapshot::wall_gap>, "Smallest gap to a wall"},
     {"aggregate", "", "label of the cell's aggregate: the smallest number of its cells",
      cell<&CellSnapshot::aggregate>},
+    marked<&Observable::of_interactions>(
+        {"bonded", "", "the same of the cells that bonds join: `output.bond_share`", cell<&CellSnapshot::bonded>}),
     {"tank_treading_angle", "rad",
      "of the outline's first node about the centroid, followed over turns; of a surface that of the node "
      "that was farthest from its axis along z at the start",
@@ -127,6 +133,10 @@ constexpr Observable aggregate_columns[] = {
     marked<&Observable::in_space>({"contact_area", "m2",
                                    "rest area of `cell_a`'s surface nearer to the other than the aggregate gap",
                                    contact<&ContactSnapshot::contact_area>}),
+    marked<&Observable::of_interactions>(
+        {"bond_share", "",
+         "energy that the two have won, over what a face of the smaller would; `nan` where no well is known",
+         contact<&ContactSnapshot::bond_share>}),
 };
 
 constexpr Observable series_columns[] = {
@@ -198,6 +208,17 @@ constexpr Observable series_columns[] = {
         {"aggregate_size_weight_mean", "",
          "size of the aggregate a cell finds itself in, averaged over the cells: sum n^2 / sum n",
          output<&Snapshot::aggregate_size_weight_mean>, "Aggregate size, mean over cells"}),
+    bonds_mean({"bonded_size_number_mean", "",
+                "cells over aggregates by bonds: `output.bond_share`; `nan` where nothing attracts",
+                output<&Snapshot::bonded_size_number_mean>}),
+    bonds_mean({"bonded_size_weight_mean", "", "the same, averaged over the cells",
+                output<&Snapshot::bonded_size_weight_mean>}),
+    marked<&Observable::has_means>({"contacts_per_cell", "",
+                                    "close cells of a cell, images included: mean over the cells",
+                                    output<&Snapshot::contacts_per_cell>}),
+    marked<&Observable::has_means>({"contact_gap", "m",
+                                    "smallest gap of two close cells: mean over the pairs; `nan` where none are",
+                                    output<&Snapshot::contact_gap>}),
     {"kinetic_energy", "J/m",
      "of the fluid as it is simulated, `density_factor` times denser than it is; docs/physics.md, "
      "\"Energy\", for this and all below, which are per depth",
@@ -231,6 +252,8 @@ constexpr Observable series_columns[] = {
 constexpr Observable size_columns[] = {
     {"cells", "", "the size: cells of an aggregate", [](const Row& row) -> Value { return row.size; }},
     {"aggregates", "", "how many aggregates have it", [](const Row& row) -> Value { return row.aggregates_of_size; }},
+    marked<&Observable::of_interactions>({"bonded", "", "how many by bonds: `output.bond_share`",
+                                          [](const Row& row) -> Value { return row.bonded_of_size; }}),
 };
 
 std::vector<Observable> with_instant(std::span<const Observable> own) {

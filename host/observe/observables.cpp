@@ -36,8 +36,11 @@ void for_each_contact(const Snapshot& output, const std::function<void(const Row
 }
 
 void for_each_size(const Snapshot& output, const std::function<void(const Row&)>& visit) {
-  for (const auto& [size, count] : output.aggregate_sizes)
-    visit({.output = output, .size = size, .aggregates_of_size = count});
+  std::map<int, std::array<int, 2>> counts;
+  for (const auto& [size, count] : output.aggregate_sizes) counts[size][0] = count;
+  for (const auto& [size, count] : output.bonded_sizes) counts[size][1] = count;
+  for (const auto& [size, count] : counts)
+    visit({.output = output, .size = size, .aggregates_of_size = count[0], .bonded_of_size = count[1]});
 }
 
 }  // namespace
@@ -85,6 +88,7 @@ nlohmann::json columns_json() {
                            {"at_openings", o.at_openings},
                            {"of_traffic", o.of_traffic},
                            {"of_forces", o.of_forces},
+                           {"of_interactions", o.of_interactions},
                            {"of_several_openings", o.end >= 0}});
     list.push_back({{"name", table.name}, {"columns", std::move(columns)}});
   }

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include "bonds.hpp"
 #include "cell_free_layer.hpp"
 #include "cell_sums.hpp"
 #include "core/fluid/relaxation.hpp"
@@ -45,7 +46,8 @@ ContactSnapshot in_si(const CellContact& c, double length) {
 
 }  // namespace
 
-Observer::Observer(const scene::Scene& scene) : scene_(&scene), domain_(scene::lattice_domain(scene)) {}
+Observer::Observer(const scene::Scene& scene, scene::Attractions attracting)
+    : scene_(&scene), attracting_(std::move(attracting)), domain_(scene::lattice_domain(scene)) {}
 
 template <class Cells>
 void Observer::begin_with(const Cells& cells) {
@@ -169,6 +171,10 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
   const Aggregates aggregates = find_aggregates(std::move(there), contacts);
   count_aggregates(aggregates, snapshot);
   for (const CellContact& contact : contacts) snapshot.contacts.push_back(in_si<D>(contact, length));
+  const auto sides = static_cast<double>(2 * contacts.size());
+  snapshot.contacts_per_cell = sides / static_cast<double>(measures.size());
+  if (sides > 0) snapshot.contact_gap = 0;
+  for (const CellContact& contact : contacts) snapshot.contact_gap += 2 * contact.gap * length / sides;
   std::vector<Eigen::Vector2d> centers;  // as seen along z
   snapshot.cells.reserve(measures.size());
   for (const CellMeasures& m : measures) {
@@ -187,6 +193,7 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
     s.wall_gap = m.wall_gap * length;
     s.aggregate = aggregates.label[k];
     s.through_image = aggregates.through_image[k];
+    s.bonded = m.cell;
     follow_stretch(m.stretch, s);
     s.length_along_force = m.length_along_force * length;
     s.width_across_force = m.width_across_force * length;
@@ -250,6 +257,7 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
   snapshot.shear_rate = snapshot.wall_stress_lower = snapshot.wall_stress_upper = std::nan("");
   snapshot.pressure_gradient = snapshot.discharge_hematocrit = std::nan("");
   snapshot.aggregate_size_number_mean = snapshot.aggregate_size_weight_mean = std::nan("");
+  snapshot.contacts_per_cell = snapshot.contact_gap = std::nan("");
   const core::AnyFluid<D>& fluid = solver.fluid();
   double drive = fluid.setting().body_force[0];
   if (scene_->domain.openings) drive = observe_openings(fluid, *scene_, units, snapshot);
@@ -303,6 +311,11 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
             : std::numeric_limits<double>::quiet_NaN();
     core::Surroundings<D> around = solver.cell_tasks()->surroundings();
     observe_cells(around, units, snapshot);
+    if (!attracting_.empty()) {
+      const auto halves = core::to_first(ranks, solver.cell_tasks()->pair_energies());
+      const double joule = units.to_si(1, units::dimension::energy_per_depth) * (D == 3 ? units.length : 1);
+      if (ranks.first()) find_bonds(snapshot, halves, attracting_, scene_->output.bond_share, joule);
+    }
     snapshot.area_drift_max = follow_area(cells, ranks);
     snapshot.area_leakage_max = area_leakage(cells, ranks);
     snapshot.membranes = observe_membranes(solver, units);

@@ -25,7 +25,8 @@ namespace rouleau::observe {
 /// Follows angles over turns, and remembers what drifts are measured against; lives for the whole run.
 class Observer {
  public:
-  explicit Observer(const scene::Scene& scene);
+  /// `attracting`: pairs of cell types for which bonds are looked for.
+  explicit Observer(const scene::Scene& scene, scene::Attractions attracting = {});
   /// Of all cells as they are placed.
   template <class Cells>
   Observer(const scene::Scene& scene, const Cells& cells) : Observer(scene) {
@@ -95,6 +96,7 @@ class Observer {
   void follow_stretch(const core::StretchRange& stretch, CellSnapshot& snapshot);
 
   const scene::Scene* scene_;
+  scene::Attractions attracting_;
   core::Domain<2> domain_;
   /// Of walls of any shape, made when first asked for.
   std::tuple<std::vector<WallPoint<2>>, std::vector<WallPoint<3>>> wall_points_;

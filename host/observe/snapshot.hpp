@@ -24,6 +24,7 @@ struct CellSnapshot {
   double wall_gap;     ///< m, to the nearer wall; NaN without walls
   int aggregate;       ///< label: smallest index of a cell of the aggregate it belongs to
   bool through_image;  ///< its aggregate is held together by a contact across the periodic boundary
+  int bonded;          ///< likewise a label, of the cells that bonds join (Snapshot::bonds)
   double stretch_min, stretch_max;  ///< of its segments or edges: length over rest length
   double length_along_force = std::numeric_limits<double>::quiet_NaN();  ///< m; NaN: none acts on the cell
   double width_across_force = length_along_force;                        ///< m, likewise
@@ -48,6 +49,7 @@ struct ContactSnapshot {
   double contact_length =
       std::numeric_limits<double>::quiet_NaN();  ///< m, of an outline a, nearer than the aggregate gap
   double contact_area = std::numeric_limits<double>::quiet_NaN();  ///< m2, the same of a surface
+  double bond_share = std::numeric_limits<double>::quiet_NaN();  ///< of the energy that a face would win; NaN: unknown
 };
 
 /// Outlines or surfaces of all cells that are there, one after another, as frames keep them.
@@ -124,13 +126,19 @@ struct Snapshot {
   std::string stage_name;
   std::vector<CellSnapshot> cells;  ///< those that are there, by their numbers
   std::vector<ContactSnapshot> contacts;
-  int aggregate_count = 0;  ///< single cells count too
+  std::vector<ContactSnapshot> bonds;  ///< pairs of different cells that are joined, close or not
+  bool attracts = false;               ///< whether any could be: else nothing is said of bonds
+  int aggregate_count = 0;             ///< single cells count too
   /// Angle of the line through an aggregate's outermost cells against x, rad, by its label, followed over turns while
   /// its members stay the same. Not there for lone cells, nor where an aggregate closed through images has no ends.
   std::map<int, double> rotation;
   std::map<int, int> aggregate_sizes;     ///< number of aggregates by their number of cells
   double aggregate_size_number_mean = 0;  ///< cells per aggregate; NaN without cells
   double aggregate_size_weight_mean = 0;  ///< cells in the aggregate of a cell, averaged over cells; NaN without cells
+  std::map<int, int> bonded_sizes = {};   ///< as aggregate_sizes, by bonds
+  double bonded_size_number_mean = std::numeric_limits<double>::quiet_NaN(),
+         bonded_size_weight_mean = bonded_size_number_mean;  ///< likewise; NaN where nothing attracts
+  double contacts_per_cell = 0, contact_gap = 0;             ///< of close cells; m, mean of them; NaN without
   double relative_viscosity = 0;  ///< wall shear stress / (viscosity x shear rate), or of the flow rate; NaN: neither
   double shear_rate = 0;          ///< 1/s, of the walls over the last step; NaN where they do not move
   double wall_stress_lower = 0, wall_stress_upper = 0;  ///< Pa, on each wall along x; NaN without

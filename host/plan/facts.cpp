@@ -250,21 +250,25 @@ std::optional<RecoveryRates> recovery_rates(const Models& models, const Facts& f
   return rates;
 }
 
-std::vector<std::array<std::string, 2>> attracting_types(const Models& models,
-                                                         const std::vector<InteractionWell>& wells) {
-  std::vector<std::array<std::string, 2>> pairs;
-  const auto add = [&](const std::array<std::string, 2>& between) {
+scene::Attractions attracting_types(const Models& models, const std::vector<InteractionWell>& wells) {
+  scene::Attractions attracting;
+  const auto add = [&](std::array<std::string, 2> between, double depth) {
     const auto is_cell = [](const std::string& name) { return name != scene::wall_name && name != scene::self_name; };
-    if (is_cell(between[0]) && is_cell(between[1])) pairs.push_back(between);
+    if (!is_cell(between[0]) || !is_cell(between[1])) return;
+    std::sort(between.begin(), between.end());
+    attracting[between] += depth;
   };
   for (const InteractionWell& described : wells) {
-    if (described.well.attracts()) add(described.between);
+    const bool tells = std::none_of(models.interactions.begin(), models.interactions.end(), [&](const auto& model) {
+      return model.manifest->id == described.model && !model.manifest->gives_output("energy");
+    });
+    if (described.well.attracts()) add(described.between, tells ? described.well.depth : std::nan(""));
   }
   for (std::size_t i = 0; i < models.interactions.size(); ++i) {
     const PlannedModel& model = models.interactions[i];
-    if (model.active() && model.remembers()) add(models.scene->names_of(models.scene->interactions[i]));
+    if (model.active() && model.remembers()) add(models.scene->names_of(models.scene->interactions[i]), std::nan(""));
   }
-  return pairs;
+  return attracting;
 }
 
 double deepest_well(const Models& models, const std::vector<InteractionWell>& wells) {

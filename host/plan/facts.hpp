@@ -102,9 +102,8 @@ double explicit_margin(const Facts& facts);
 std::optional<RecoveryRates> recovery_rates(const Models& models, const Facts& facts);
 
 /// Pairs of cell types between which an interaction has a well, or remembers, as bonds do, which pull without one: only
-/// these are joined where they are close.
-std::vector<std::array<std::string, 2>> attracting_types(const Models& models,
-                                                         const std::vector<InteractionWell>& wells);
+/// these can be joined.
+scene::Attractions attracting_types(const Models& models, const std::vector<InteractionWell>& wells);
 
 /// Depth of the deepest well, J/m2; 0 where the interactions attract nowhere, NaN without cells and where
 /// there is no interaction or all that there are have a state.

@@ -65,8 +65,8 @@ struct PlanReport {
   std::map<std::string, double> dimensionless;  ///< NaN: undefined
   std::vector<Conversion> conversions;
   std::vector<InteractionWell> wells;
-  std::vector<std::array<std::string, 2>> attracting;  ///< attracting_types()
-  double close_gap = 0;                                ///< m; cells are close below it: output.aggregate_gap
+  scene::Attractions attracting;  ///< attracting_types()
+  double close_gap = 0;           ///< m; cells are close below it: output.aggregate_gap
   std::vector<PackedCells> packings;
   std::vector<shape::FirstStretch> first_stretches;  ///< of types with a stress-free shape
   std::vector<LateStart> late_starts;                ///< by more than 1 % of the stage's strain

@@ -182,6 +182,8 @@ std::string in_words(const LateStart& late) {
 }
 
 nlohmann::json shared_sections(const PlanReport& report) {
+  auto attracting = nlohmann::json::array();
+  for (const auto& [between, depth] : report.attracting) attracting.push_back(between);
   return {{"warnings", report.warnings},
           {"conversions", report.conversions},
           {"packings", report.packings},
@@ -192,7 +194,7 @@ nlohmann::json shared_sections(const PlanReport& report) {
           {"left_out", report.left_out},
           {"late_starts", report.late_starts},
           {"box_share", report.box_share ? nlohmann::json(*report.box_share) : nlohmann::json()},
-          {"contacts", {{"close_below_m", report.close_gap}, {"attracting", report.attracting}}}};
+          {"contacts", {{"close_below_m", report.close_gap}, {"attracting", attracting}}}};
 }
 
 nlohmann::json to_json(const Plan& plan, const PlanReport& report) {

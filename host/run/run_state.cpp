@@ -24,6 +24,7 @@ void RunState::report(Summary& s) const {
   s.momentum_residual = momentum_residual;
   s.aggregates_final = history.count();
   s.aggregate_history = history.events();
+  s.lifetimes = history.lifetimes();
   s.rheology = rheology.stages();
   s.energy = energy.summary();
   s.stages = stages;

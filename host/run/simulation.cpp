@@ -43,7 +43,7 @@ class Simulation final : StepHooks {
       : plan_(plan),
         options_(options),
         directory_(directory),
-        state_(observe::Observer(*plan.scene)),
+        state_(observe::Observer(*plan.scene, report.attracting)),
         engine_(plan, ranks, owner),
         course_(plan, state_),
         traffic_(plan, engine_, state_),
@@ -299,7 +299,7 @@ class Simulation final : StepHooks {
     }
     if (fails(monitor::check_energy(state_.energy, engine_.cells(), ranks(), plan_, setting()))) return false;
     if (ranks().first()) {
-      state_.history.follow(snapshot, summary_.plan.attracting);
+      state_.history.follow(snapshot);
       state_.rheology.follow(snapshot);
       if (directory_ != nullptr) directory_->write(snapshot);
     } else {

@@ -85,6 +85,7 @@ struct Summary {
   std::vector<observe::AggregateEvent> aggregate_history;  ///< one entry at each change
   nlohmann::json energy;                                   ///< object: observe::EnergyHistory::summary()
   nlohmann::json rheology = nlohmann::json::array();       ///< observe::RheologyHistory::stages()
+  nlohmann::json lifetimes = nlohmann::json::array();      ///< observe::AggregateHistory::lifetimes()
   nlohmann::json cell_traffic;                             ///< observe::CellTraffic::summary(); null: cells stay
   std::vector<StageEnd> stages;
   std::vector<Continuation> resumed;

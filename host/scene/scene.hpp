@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -231,6 +232,10 @@ struct Interaction {
   [[nodiscard]] bool with_self() const { return between[1] == self; }
 };
 
+/// Names of cell types that attract each other, in alphabetical order, and how deep their wells are together, J/m2; NaN:
+/// a potential between them tells no energy, or has no well.
+using Attractions = std::map<std::array<std::string, 2>, double>;
+
 enum class WallStart { impulsive, developed };
 
 /// What is added to what drives a stage: amplitudes times sin(2 pi frequency t), t from the start of the stage.
@@ -313,6 +318,7 @@ struct Output {
   FieldStorage field_storage;
   std::optional<double> checkpoint_seconds = 600;  ///< of wall-clock time between checkpoints; absent: none are written
   double aggregate_gap = 0.75e-6;                  ///< m; two cells are aggregated while their smallest gap is below
+  double bond_share = 0.05;  ///< two cells are joined from this share of the energy on that a whole face would win
 
   [[nodiscard]] bool wants(std::string_view quantity) const {
     return std::find(quantities.begin(), quantities.end(), quantity) != quantities.end();

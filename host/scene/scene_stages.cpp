@@ -367,6 +367,7 @@ Output read_output(const SceneFields& fields, const std::vector<Stage>& stages, 
     output.checkpoint_seconds.reset();  // "never"
   }
   output.aggregate_gap = fields.quantity_or("/output/aggregate_gap", "m", range::length, output.aggregate_gap);
+  output.bond_share = fields.value_or("/output/bond_share", output.bond_share);
   return output;
 }
 

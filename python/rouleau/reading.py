@@ -445,6 +445,16 @@ class Run(Outputs):
         return pandas.DataFrame.from_dict(rows, orient="index", columns=["value", "error", "how"]).rename_axis("quantity")
 
     @property
+    def lifetimes(self) -> pandas.DataFrame:
+        """How long joined cells stayed together: a row for each `stage` and number of `cells`, with how many aggregates were
+        `seen`, how many `broken` or `grown`, and their `time_s` together. Rates are of breaking alone, with their standard error
+        (that of one event where none broke). Empty where nothing attracts. Outputs see no break that mends between two of them."""
+        import pandas
+        rows = [{"stage": stage["stage"], **size} for stage in self.summary.get("lifetimes", ()) for size in stage["sizes"]]
+        return pandas.DataFrame(rows, columns=["stage", "cells", "seen", "broken", "grown", "time_s", "break_up_rate_per_s",
+                                               "standard_error_per_s", "mean_lifetime_s"])
+
+    @property
     def frames(self) -> pandas.DataFrame:
         """The frames that are on the disk: `step`, `time_s`, `strain`, `stage_name`, whether there are `fields`, and the
         `file` with its `name` in it. Of a run that goes on these are the frames up to its last checkpoint."""

@@ -14,6 +14,7 @@ def lines(columns):
         space += "where that end has several, and likewise of the others: " if column["of_several_openings"] else ""
         space += "where cells may come or leave: " if column["of_traffic"] else ""
         space += "where forces or gravity act on cells: " if column["of_forces"] else ""
+        space += "where cells act on each other: " if column["of_interactions"] else ""
         yield f"| `{column['column']}` | {space}{column['doc']}{means} |"
 
 

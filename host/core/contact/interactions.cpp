@@ -111,6 +111,25 @@ double Interactions<D>::energy(const Cells& cells, const Ranks<D>& ranks) const 
 }
 
 template <int D>
+std::vector<PairEnergy> Interactions<D>::pair_energies(const Cells& cells) const {
+  std::vector<PairEnergy> pairs;
+  Scratch scratch;
+  for (const int cell : cells.own_cells()) {
+    evaluate(cell, cells, true, nullptr, scratch);
+    const CellRange& range = cells.cells[cell];
+    const double* measure = cells.types[range.type]->node_measure().data();
+    const auto first = static_cast<std::ptrdiff_t>(pairs.size());
+    for_others(cell, scratch.contacts, [&](int other, const ImageShift& shift, std::size_t i) {
+      auto pair = std::find_if(pairs.begin() + first, pairs.end(),
+                               [&](const PairEnergy& p) { return p.other == other && p.shift == shift; });
+      if (pair == pairs.end()) pair = pairs.insert(pair, {cell, other, shift, 0});
+      pair->energy += 0.5 * measure[node_of(scratch.contacts, i) - range.first] * scratch.result[i];
+    });
+  }
+  return pairs;
+}
+
+template <int D>
 std::string Interactions<D>::without_energy() const {
   for (const ContactLaw& law : laws_)
     if (!law.has_energy()) return law.potential().id;
@@ -157,6 +176,15 @@ Range Interactions<2>::choose(std::size_t law, int cell, const Membranes& membra
       take(list.ranges[p], pairs[p].other, pairs[p].shift);
   }
   return piece;
+}
+
+template <>
+template <class Visit>
+void Interactions<2>::for_others(int cell, const ContactList& list, Visit visit) const {
+  const std::vector<NeighbourList::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    for (int i = list.ranges[p].begin; i < list.ranges[p].end; ++i)
+      visit(pairs[p].other, pairs[p].shift, static_cast<std::size_t>(i));
 }
 
 template <>
@@ -269,6 +297,13 @@ Range Interactions<3>::choose(std::size_t law, int cell, const Surfaces& surface
     if (remembers) scratch.values.key.push_back({contact.node - own.first, contact.other, contact.shift});
   }
   return {0, 0};
+}
+
+template <>
+template <class Visit>
+void Interactions<3>::for_others(int, const List& list, Visit visit) const {
+  for (std::size_t i = 0; i < list.contacts.size(); ++i)
+    if (!list.contacts[i].within) visit(list.contacts[i].other, list.contacts[i].shift, i);
 }
 
 template <>

@@ -38,6 +38,13 @@ struct ContactsOf<3> {
   using Reactions = std::vector<TouchedCell>;
 };
 
+/// What the contacts of a cell's nodes with an image of another cell hold: their half of a pair's energy.
+struct PairEnergy {
+  int cell, other;
+  ImageShift shift;  ///< of the other
+  double energy;     ///< lattice units
+};
+
 /// Node i with rest measure w (in two dimensions a length, in three an area) at distance r of its closest point on
 /// another cell: energy w/2 phi(r), force w/2 f(r) along the connecting line, the reaction shared by the ends of the
 /// segment, or the corners of the triangle, that the point lies on. With measures at rest this is the exact gradient of
@@ -88,6 +95,8 @@ class Interactions {
   /// Energy of the contacts at the present positions, for which run() has made the lists, in their present state, of
   /// all ranks' cells. Not a pass.
   [[nodiscard]] double energy(const Cells& cells, const Ranks<D>& ranks = {}) const;
+  /// The same of each pair of different cells, or of a cell and its image, from each side: of this rank's cells.
+  [[nodiscard]] std::vector<PairEnergy> pair_energies(const Cells& cells) const;
   /// A potential that acts but tells no energy; empty: none.
   [[nodiscard]] std::string without_energy() const;
   [[nodiscard]] const typename ContactsOf<D>::Finder& contacts() const { return contacts_; }
@@ -110,6 +119,10 @@ class Interactions {
   /// Sets scratch.result to the sum of the potentials' forces, or energies, at the contacts of a cell. `next`: as
   /// ContactLaw has it.
   void evaluate(int cell, const Cells& cells, bool energy, std::vector<ContactState>* next, Scratch& scratch) const;
+  /// Calls visit(other, shift, i) for the contacts i of a cell that are not its own, those with an image one after
+  /// another or in the order of nodes.
+  template <class Visit>
+  void for_others(int cell, const List& list, Visit visit) const;
   void make_room_for_reactions(int cell);
   /// Forces on the cell's own nodes; those on others are left for their workers.
   void act(int cell, Cells& cells, const Scratch& scratch);

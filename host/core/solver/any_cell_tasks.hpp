@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/contact/interactions.hpp"
 #include "core/contact/wall_contacts.hpp"
 #include "core/fluid/walls.hpp"
 #include "core/membrane/displacement_watch.hpp"
@@ -58,6 +59,8 @@ class AnyCellTasks {
   [[nodiscard]] virtual MembraneEnergy membrane_energy() = 0;
   /// Of the kinds of interactions that there are.
   [[nodiscard]] virtual std::vector<InteractionEnergy> interaction_energies() const = 0;
+  /// Of this rank's cells, each with others; none without interactions between cells.
+  [[nodiscard]] virtual std::vector<PairEnergy> pair_energies() const = 0;
   /// Of each segment, or triangle, of a cell of this rank's, all laws together.
   [[nodiscard]] virtual std::vector<double> tensions(int cell) = 0;
   /// What walls and the setup's external forces do to all cells; and of the latter alone their sum and power.

@@ -98,6 +98,10 @@ class CellTasks final : public AnyCellTasks<D> {
     return this->energies_of(cells_, ranks_, interactions_, wall_contacts_);
   }
 
+  [[nodiscard]] std::vector<PairEnergy> pair_energies() const override {
+    return interactions_ ? interactions_->pair_energies(cells_) : std::vector<PairEnergy>{};
+  }
+
  private:
   /// What is spread: forces on the nodes, or what a correction makes of them.
   [[nodiscard]] std::array<const double*, D> spread_forces() const { return slip_ ? slip_->forces() : cells_.forces(); }

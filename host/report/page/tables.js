@@ -101,7 +101,7 @@ function showHistory(run, summary) {
     {title: "Members", value: r => (r.members || []).map(m => m.join("+")).join(" | ")}, {title: "Connected across the periodic boundary", value: r => r.through_image ? "yes" : "no"}], history.slice(0, 200), {stacked: true})),
     ...(history.length > 200 ? [note(`The first 200 of ${history.length} changes; summary.json has all.`)] : []));
   const stages = summary.rheology || [], largest = name => Math.max(...stages.map(stage => Math.abs(stage.means?.[name]?.mean ?? 0)));
-  const isResult = (means, name) => (attracts(run) || !name.startsWith("aggregate")) && (!name.startsWith("cell_free") || (!name.endsWith("empty") && layersAreThere(means)))
+  const isResult = (means, name) => (attracts(run) || !/^(aggregate|contact)/.test(name)) && (!name.startsWith("cell_free") || (!name.endsWith("empty") && layersAreThere(means)))
     && Math.abs(means[name].mean) >= 1e-9 * largest(name);  // below is rounding, of walls at rest for example
   const means = [...stages].reverse().flatMap(stage => Object.entries(stage.means || {}).filter(([, v]) => v && typeof v === "object" && typeof v.mean === "number")
     .filter(([name]) => isResult(stage.means, name)).map(([name, {mean, deviation}]) => {

@@ -62,32 +62,72 @@ TEST_CASE("of many cells the first and the last event alone keep who is joined t
   CHECK(history.rouleaux() == 1);
 }
 
-TEST_CASE("only contacts of attracting types join cells, and a pair that meets through an image has parted") {
+TEST_CASE("only what bonds join is joined, and a pair that meets through an image has parted") {
   Snapshot both = snapshot({0, 0, 0});
-  both.cells[0].type = both.cells[1].type = "rbc";
-  both.cells[2].type = "platelet";
   const auto touching = [](int a, int b, int image) { return ContactSnapshot{a, b, {image, 0, 0}, 1e-7, 1e-6}; };
   both.contacts = {touching(0, 1, 0), touching(1, 2, 0)};
   AggregateHistory mixed, repelling;
-  mixed.follow(both, {{"rbc", "rbc"}});
   repelling.follow(both);
+  CHECK(repelling.events()[0].joined.empty());
+  CHECK(repelling.lifetimes().empty());
+  both.attracts = true;
+  both.bonds = {touching(0, 1, 0)};
+  mixed.follow(both);
   CHECK(mixed.events()[0].together() == std::vector<std::vector<int>>{{0, 1}, {2}});
   CHECK(mixed.rouleaux() == 1);
-  CHECK(repelling.events()[0].joined.empty());
-  // The other order of the types is the same pair of them; a contact of a cell with its own image joins nothing.
-  AggregateHistory turned;
-  both.contacts.push_back(touching(2, 2, 1));
-  turned.follow(both, {{"platelet", "rbc"}});
-  CHECK(turned.events()[0].together() == std::vector<std::vector<int>>{{0}, {1, 2}});
 
-  both.contacts[0].image = {-1, 0, 0};
-  mixed.follow(both, {{"rbc", "rbc"}});
+  both.bonds[0].image = {-1, 0, 0};
+  mixed.follow(both);
   REQUIRE(mixed.events().size() == 2);
   CHECK(mixed.events()[1].met_images == std::vector<std::array<int, 2>>{{0, 1}});
-  both.contacts.push_back(touching(0, 1, 0));  // by both images at once: it has not parted
-  mixed.follow(both, {{"rbc", "rbc"}});
+  both.bonds.push_back(touching(0, 1, 0));  // by both images at once: it has not parted
+  mixed.follow(both);
   CHECK(mixed.events().size() == 2);
   CHECK(nlohmann::json(mixed).get<AggregateHistory>().events().size() == 2);
+}
+
+TEST_CASE("aggregates live from the first output with their members to the first without, and break or grow") {
+  AggregateHistory history;
+  const auto at = [&](double time, const std::string& stage, std::vector<std::array<int, 2>> pairs, int cells = 4) {
+    std::vector<int> labels(cells);
+    std::iota(labels.begin(), labels.end(), 0);
+    Snapshot s = snapshot(labels);
+    s.time = time;
+    s.stage_name = stage;
+    s.attracts = true;
+    for (const auto& [a, b] : pairs) s.bonds.push_back({a, b, {}, 1e-7});
+    history.follow(s);
+    history = nlohmann::json(history).get<AggregateHistory>();
+  };
+  at(0, "rest", {});
+  at(1, "rest", {{0, 1}, {2, 3}});
+  at(3, "rest", {{0, 1}, {1, 2}, {2, 3}});  // both pairs have grown
+  at(4, "shear", {{0, 1}, {1, 2}});         // the four broke in the first second of the stage
+  at(6, "shear", {{0, 1}});
+  at(7, "shear", {{0, 1}}, 1);  // cell 1 has left: that is no break-up
+  const nlohmann::json lives = history.lifetimes();
+  REQUIRE(lives.size() == 2);
+  CHECK(lives[0]["stage"] == "rest");
+  const auto size = [&](int stage, int k) { return lives[stage]["sizes"][k]; };
+  CHECK(size(0, 0)["cells"] == 2);
+  CHECK(size(0, 0)["seen"] == 2);
+  CHECK(size(0, 0)["grown"] == 2);
+  CHECK(size(0, 0)["broken"] == 0);
+  CHECK(size(0, 0)["time_s"] == 4);
+  CHECK(size(0, 0)["mean_lifetime_s"] == 2);
+  CHECK(size(0, 0)["break_up_rate_per_s"] == 0);
+  CHECK(size(0, 0)["standard_error_per_s"] == 0.25);
+  CHECK(size(0, 1)["cells"] == 4);
+  CHECK(size(0, 1)["mean_lifetime_s"].is_null());
+  CHECK(size(1, 0)["seen"] == 1);
+  CHECK(size(1, 0)["time_s"] == 1);
+  CHECK(size(1, 0)["broken"] == 0);
+  CHECK(size(1, 1)["cells"] == 3);
+  CHECK(size(1, 1)["broken"] == 1);
+  CHECK(size(1, 1)["break_up_rate_per_s"] == 0.5);
+  CHECK(size(1, 2)["cells"] == 4);
+  CHECK(size(1, 2)["seen"] == 1);
+  CHECK(size(1, 2)["break_up_rate_per_s"] == 1);
 }
 
 TEST_CASE("aggregates are said as rouleaux and single cells") {

@@ -121,7 +121,6 @@ TEST_CASE(
 }
 
 TEST_CASE("cells are joined by wells and by bonds between them, by nothing else") {
-  using Pairs = std::vector<std::array<std::string, 2>>;
   const auto attracting = [](const std::string& interactions) {
     const scene::Scene scene = held_by_walls("[" + interactions + "]");
     return make_report(make_plan(scene, plugins_of_reports())).attracting;
@@ -141,8 +140,15 @@ TEST_CASE("cells are joined by wells and by bonds between them, by nothing else"
   }
   for (const std::string& joined : {morse, bonds, repulsion + "," + morse}) {
     INFO(joined);
-    CHECK(attracting(joined) == Pairs{{"rbc", "rbc"}});
+    const scene::Attractions found = attracting(joined);
+    REQUIRE(found.size() == 1);
+    CHECK(found.begin()->first == std::array<std::string, 2>{"rbc", "rbc"});
+    if (joined == bonds)
+      CHECK(std::isnan(found.begin()->second));
+    else
+      CHECK(found.begin()->second == Approx(1e-8).epsilon(1e-6));
   }
+  CHECK(attracting(morse + "," + morse).begin()->second == Approx(2e-8).epsilon(1e-6));
 }
 
 TEST_CASE("potentials of walls and of cells are told apart by what they act between") {

@@ -130,7 +130,7 @@ Summary summary_of_cells() {
   summary.mass_drift = 1e-13;
   summary.area_drift_max = 2e-4;
   summary.aggregates_final = 4;
-  summary.plan.attracting.push_back({"rbc", "rbc"});
+  summary.plan.attracting[{"rbc", "rbc"}] = 1e-7;
   summary.aggregate_history = {{0, 0, 4, {}, false},    {0, 1, 1, {}, false},        {8.75, 2.4375, 3, {}, false},
                                {10, 2.5, 4, {}, false}, {12.5, 2.625, 3, {}, false}, {13, 2.65, 4, {}, false}};
   return summary;
