@@ -28,7 +28,7 @@ void FrameWriter::write_header(hdf5::File& target) const {
   target.attribute("/", "nodes", std::vector<double>(domain_.nodes.begin(), domain_.nodes.end()));
   for (int axis = 1; axis < domain_.dimension(); ++axis)
     target.attribute("/", std::string("periodic_") + scene::axis_names[axis], domain_.periodic[axis] ? 1L : 0L);
-  if (domain_.is_open()) target.attribute("/", "periodic_x", 0L);
+  if (!domain_.periodic[0]) target.attribute("/", "periodic_x", 0L);
   if (!storage_.whole()) {
     const FieldGrid grid = field_grid();
     target.attribute("/", "fields_first_m", grid.origin);

@@ -82,26 +82,29 @@ double rear_hollow(const core::Mesh& mesh, const core::Nodes& nodes, const core:
 
 }  // namespace
 
-// Over a volume whose velocity u has no divergence, u_x = div (x u): the integral is that of x u n over its surface.
+// Over a volume whose velocity u has no divergence, u_x = div (x u), and so along any axis: the integral is that of
+// x u n over its surface.
 // Along segments and over triangles places and velocities are linear.
-double carried(const core::Membranes& m, int c) {
+double carried(const core::Membranes& m, int c, int axis) {
   const core::CellRange& cell = m.cells[c];
-  const double middle = m.position[0][cell.first];
+  const auto& place = m.position[axis];
+  const double middle = place[cell.first];
   double flux = 0;
   for (int i = cell.first; i < cell.end(); ++i) {
     const int n = cell.next(i);
     const double normal_x = m.position[1][n] - m.position[1][i], normal_y = m.position[0][i] - m.position[0][n];
     const auto out = [&](int k) { return m.velocity[0][k] * normal_x + m.velocity[1][k] * normal_y; };
-    const double x = m.position[0][i] - middle, next_x = m.position[0][n] - middle;
+    const double x = place[i] - middle, next_x = place[n] - middle;
     flux += ((2 * x + next_x) * out(i) + (x + 2 * next_x) * out(n)) / 6;
   }
   return flux;
 }
 
-double carried(const core::Surfaces& s, int c) {
+double carried(const core::Surfaces& s, int c, int axis) {
   const core::Mesh& mesh = s.type_of(c).mesh;
   const core::Nodes at = s.nodes(c);
   const int first = s.cells[c].first;
+  const double* const place = &s.position[axis][first];
   const std::vector<core::Vec<3>> twice_area = core::area_vectors(mesh, at);
   double flux = 0;
   std::size_t t = 0;
@@ -110,7 +113,7 @@ double carried(const core::Surfaces& s, int c) {
     for (const int node : corners) {
       double out = 0;
       for (int k = 0; k < 3; ++k) out += s.velocity[k][first + node] * twice_area[t][k] / 2;
-      const double x = at.x[node] - at.x[0];
+      const double x = place[node] - place[0];
       sum_x += x, sum_out += out, products += x * out;
     }
     flux += (sum_x * sum_out + products) / 12;
@@ -204,7 +207,7 @@ void describe_surface(const CellMeasures& measures, const units::LatticeUnits& u
   cell.treading = units.to_si(measures.treading, units::dimension::rate) / (2 * std::numbers::pi);
   cell.rear_hollow = measures.rear_hollow * length;
   const auto off = [&](double place, int axis) { return domain.periodic[axis] ? 0 : place - domain.size[axis] / 2; };
-  const bool has_axis = !domain.periodic[1] && !domain.has_shapes();
+  const bool has_axis = domain.walled(1) && !domain.has_shapes();
   cell.offset_from_axis = has_axis ? std::hypot(off(cell.y, 1), off(cell.z, 2)) : std::nan("");
 }
 

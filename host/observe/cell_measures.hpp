@@ -52,9 +52,9 @@ double enclosed(const core::Membranes& membranes, int cell);
 /// Volume that a surface encloses.
 double enclosed(const core::Surfaces& surfaces, int cell);
 
-/// Integral of the velocity along x over what a cell encloses.
-double carried(const core::Membranes& membranes, int cell);
-double carried(const core::Surfaces& surfaces, int cell);
+/// Integral of the velocity along an axis over what a cell encloses.
+double carried(const core::Membranes& membranes, int cell, int axis = 0);
+double carried(const core::Surfaces& surfaces, int cell, int axis = 0);
 
 /// The node of a surface farthest from the line along z through its centroid: its angle about that line is told best.
 int outermost(const core::Surfaces& surfaces, int cell);

@@ -62,7 +62,7 @@ void add_opening(std::vector<Observable>& columns, bool cells) {
   constexpr auto cells_of = [](const Row& row) -> Value {
     return (end == 0 ? 1 : -1) * value_or(row.output.cells_through[end], number, 0L);
   };
-  constexpr const char* through = "flow along +x through one opening, by its number";
+  constexpr const char* through = "flow through one opening, by its number, along the open axis";
   if (cells) {
     const char* const doc =
         end == 0 ? "cells that came in through it, less those that left" : "cells that left through it";
@@ -79,7 +79,8 @@ void add_openings(std::vector<Observable>& columns, bool cells, std::integer_seq
   (add_opening<1, number>(columns, cells), ...);
 }
 
-constexpr const char* through_inlet = "flow through all of the inlet, along +x, at the first nodes behind it";
+constexpr const char* through_inlet =
+    "flow through all of the inlet, along the open axis, at the first nodes behind it";
 constexpr const char* through_outlet = "likewise, of the outlet, at the last nodes before it";
 
 }  // namespace
@@ -164,15 +165,15 @@ void CellTraffic::left(int cell, double time, int end, int opening) {
   ++stayed_;
 }
 
-void CellTraffic::flowed(const std::array<std::vector<double>, 2>& along_x, double time) {
+void CellTraffic::flowed(const std::array<std::vector<double>, 2>& along_axis, double time) {
   for (const int end : {0, 1}) {
-    for (std::size_t k = 0; flows_ && k < along_x[end].size(); ++k) {
-      const double along = (last_flow_[end].at(k) + along_x[end][k]) / 2 * (time - last_time_);
+    for (std::size_t k = 0; flows_ && k < along_axis[end].size(); ++k) {
+      const double along = (last_flow_[end].at(k) + along_axis[end][k]) / 2 * (time - last_time_);
       at_opening(stage(time).ends, end, static_cast<int>(k)).flow += end == 0 ? along : -along;
     }
   }
   flows_ = true;
-  last_flow_ = along_x;
+  last_flow_ = along_axis;
   last_time_ = time;
 }
 

@@ -21,7 +21,7 @@ bool has_traffic(const scene::Scene& scene);
 /// What a run of a scene has.
 RunKind kind_of(const scene::Scene& scene);
 
-/// Counts cells that come and leave, and how much volume they and all that flows carry through the ends of x, in m3, in
+/// Counts cells that come and leave, and how much volume they and all that flows carry through the open ends, in m3, in
 /// two dimensions in m2. Each cell comes and leaves once.
 class CellTraffic {
  public:
@@ -34,9 +34,9 @@ class CellTraffic {
   void came(int cell, double volume, double time, int end, int opening = 0);
   /// It leaves through an end. Throws std::out_of_range for a cell that is not there.
   void left(int cell, double time, int end, int opening = 0);
-  /// What flows along +x through each opening of both ends at this time, cells included, m3/s or m2/s; it changes
+  /// What flows along the open axis through each opening of both ends at this time, cells included, m3/s or m2/s; it changes
   /// linearly between two calls.
-  void flowed(const std::array<std::vector<double>, 2>& along_x, double time);
+  void flowed(const std::array<std::vector<double>, 2>& along_axis, double time);
 
   /// What has flowed in through the lower end, less what flowed out there, since the run began.
   [[nodiscard]] double come_in() const;

@@ -62,11 +62,11 @@ EnergySnapshot observe_energy(core::AnySolver<D>& solver, const core::Energetics
   energy.kinetic = fluid.kinetic * joule;
   energy.viscous_dissipation = fluid.dissipation * watt;
   energy.total = energy.kinetic;
-  if (!setting.domain.periodic[1] || setting.solid) energy.wall_power = fluid.wall_power * watt;
+  if (setting.domain.walled(1) || setting.solid) energy.wall_power = fluid.wall_power * watt;
   const core::WallVelocity& walls = solver.fluid().last_walls();
   if (setting.solid && (walls.lower != 0 || walls.upper != 0)) {
     energy.wall_power -= (forces.lower[0] * walls.lower + forces.upper[0] * walls.upper) * watt;
-  } else if (!setting.domain.periodic[1] && !setting.solid) {
+  } else if (setting.domain.walled(1) && !setting.solid) {
     const auto stress = solver.mean_wall_stress(forces);  // what is done to the walls
     energy.wall_power =
         -(stress.lower * walls.lower + stress.upper * walls.upper) * setting.domain.size[0] * depth * watt;

@@ -129,7 +129,8 @@ class Vorticity {
     const core::Moments<D>* const row = axis == 0 ? own_ : step > 0 ? above_[k] : below_[k];
     const double own = own_[x].velocity[component];
     const double upper_or_lower = step > 0 ? walls_.upper : walls_.lower;
-    if (column < 0) return 2 * own - own_[x - step].velocity[component];  // beyond an opening it goes on
+    if (column < 0 || (row == nullptr && axis == rows_.domain().open_axis))  // beyond an opening it goes on
+      return 2 * own - (axis == 0 ? own_[x - step] : (step > 0 ? below_ : above_)[k][x]).velocity[component];
     if (row == nullptr) return 2 * (axis == 1 && component == 0 ? upper_or_lower : 0) - own;
     if (solid(x, axis, step)) return 2 * of_wall(x, component, axis, step) - own;
     return row[column].velocity[component];

@@ -262,7 +262,7 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
   double drive = fluid.setting().body_force[0];
   if (scene_->domain.openings) drive = observe_openings(fluid, *scene_, units, snapshot);
   const bool oscillates = setting.oscillation.frequency != 0;
-  const bool has_walls = !scene_->domain.periodic[1] || scene_->domain.has_shapes();  // across y, or of any shape
+  const bool has_walls = scene_->domain.walled(1) || scene_->domain.has_shapes();  // across y, or of any shape
   const auto on_walls = has_walls ? solver.wall_forces() : core::WallForces<D>{};
   if (has_walls) {
     const auto stress = solver.mean_wall_stress(on_walls);
@@ -285,13 +285,14 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
           apparent_viscosity(rate / scene::duct_share(scene_->domain), drive, setting, scene_->domain.nodes[1]);
     snapshot.flow_rate = units.to_si(rate, units::dimension::velocity) * units.length;
     const scene::Domain& box = scene_->domain;
-    snapshot.mean_velocity = snapshot.flow_rate;  // times what the flow rate is a mean over
-    for (int axis = 0; axis < box.dimension(); ++axis) snapshot.mean_velocity *= axis == 1 ? 1 : box.size[axis];
+    snapshot.mean_velocity = snapshot.flow_rate;    // times what the flow rate is a mean over
+    const int height = box.open_axis == 1 ? 0 : 1;  // the axis that it is an integral over
+    for (int axis = 0; axis < box.dimension(); ++axis) snapshot.mean_velocity *= axis == height ? 1 : box.size[axis];
     snapshot.mean_velocity /= box.content();
     // Over one flow rate, along the length and of the whole depth.
-    double flow = rate * box.nodes[0];
-    for (int axis = 2; axis < D; ++axis) flow *= box.nodes[axis];
-    const double carried = cells.cells.empty() ? 0 : cell_flux(cells, solver.ranks());
+    double flow = rate;
+    for (int axis = 0; axis < D; ++axis) flow *= axis == height ? 1 : box.nodes[axis];
+    const double carried = cells.cells.empty() ? 0 : cell_flux(cells, solver.ranks(), box.flow_axis());
     if (carried != 0 && flow != 0) snapshot.discharge_hematocrit = carried / flow;
   }
   if (setting.stage->pressure_gradient != scene::Vector() || setting.stage->mean_velocity ||

@@ -32,15 +32,15 @@ double fluid_content(const scene::Domain& domain) {
 }  // namespace
 
 bool is_driven_channel(const scene::StageSetting& setting, const scene::Scene& scene) {
-  return setting.largest_body_force().x() != 0 && setting.fastest_wall() == 0 &&
-         (!scene.domain.periodic[1] || scene.domain.has_shapes());
+  return setting.largest_body_force()[scene.domain.flow_axis()] != 0 && setting.fastest_wall() == 0 &&
+         (scene.domain.walled(1) || scene.domain.has_shapes());
 }
 
 template <int D>
 double flow_rate(const core::AnyFluid<D>& fluid, const std::vector<double>& row_velocities) {
   const core::Domain<D>& domain = fluid.setting().domain;
   double rate = core::flow_rate(row_velocities, fluid.walls_now(), domain, fluid.setting().solid != nullptr);
-  for (int axis = 2; axis < D; ++axis) rate /= domain.size[axis];
+  if constexpr (D == 3) rate /= domain.size[domain.flow_axis() == 2 ? 0 : 2];
   return rate;
 }
 
@@ -60,17 +60,17 @@ double observe_openings(const core::AnyFluid<D>& fluid, const scene::Scene& scen
     snapshot.opening_flow[1].push_back(units.to_si(flow, units::dimension::velocity) * area);
   snapshot.inlet_pressure = outside + units.to_si(lower.pressure, units::dimension::pressure);
   snapshot.outlet_pressure = outside + units.to_si(upper.pressure, units::dimension::pressure);
-  return (lower.pressure - upper.pressure) / (scene.domain.nodes[0] - 1);
+  return (lower.pressure - upper.pressure) / (scene.domain.nodes[scene.domain.open_axis] - 1);
 }
 
 template double observe_openings(const core::AnyFluid<2>&, const scene::Scene&, const units::LatticeUnits&, Snapshot&);
 template double observe_openings(const core::AnyFluid<3>&, const scene::Scene&, const units::LatticeUnits&, Snapshot&);
 
-double cell_flux(const core::Membranes& m, const core::Ranks<2>& ranks) {
-  return sum_over(m, ranks, [&](int c) { return carried(m, c); });
+double cell_flux(const core::Membranes& m, const core::Ranks<2>& ranks, int axis) {
+  return sum_over(m, ranks, [&](int c) { return carried(m, c, axis); });
 }
-double cell_flux(const core::Surfaces& s, const core::Ranks<3>& ranks) {
-  return sum_over(s, ranks, [&](int c) { return carried(s, c); });
+double cell_flux(const core::Surfaces& s, const core::Ranks<3>& ranks, int axis) {
+  return sum_over(s, ranks, [&](int c) { return carried(s, c, axis); });
 }
 
 double apparent_viscosity(double flow_rate, double body_force, const scene::StageSetting& setting, int height) {

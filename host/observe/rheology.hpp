@@ -29,10 +29,11 @@ double particle_stress(const core::Membranes& membranes, const scene::Scene& sce
 double particle_stress(const core::Surfaces& surfaces, const scene::Scene& scene, double viscosity,
                        const core::Ranks<3>& ranks = {}, const ForceAcrossImages& across_images = {});
 
-/// Whether a force along x drives this stage's fluid between walls at rest: a flow with a flow rate.
+/// Whether a force along x, or openings, drive this stage's fluid between walls at rest: a flow with a flow rate.
 bool is_driven_channel(const scene::StageSetting& setting, const scene::Scene& scene);
 
-/// Integral of the velocity along x over the height, averaged over the length; lattice units. Exact for velocities that
+/// Integral of the velocity along x over the height, averaged over length and depth; lattice units. Between openings
+/// that is along their axis; the height is then x if they are along y, the depth x if along z. Exact for velocities that
 /// are parabolas in y (midpoint rule with its end correction; the walls' velocity counts as a value). From the mean
 /// velocities of the fluid's rows (core::FluidMeasures).
 template <int D>
@@ -49,10 +50,10 @@ template <int D>
 double observe_openings(const core::AnyFluid<D>& fluid, const scene::Scene& scene, const units::LatticeUnits& units,
                         Snapshot& snapshot);
 
-/// Integral of the velocity along x over what the cells enclose, lattice units: from their membranes' velocities, for
+/// Integral of the velocity along an axis over what the cells enclose, lattice units: from their membranes' velocities, for
 /// what they enclose keeps its volume. All ranks together.
-double cell_flux(const core::Membranes& membranes, const core::Ranks<2>& ranks = {});
-double cell_flux(const core::Surfaces& surfaces, const core::Ranks<3>& ranks = {});
+double cell_flux(const core::Membranes& membranes, const core::Ranks<2>& ranks = {}, int axis = 0);
+double cell_flux(const core::Surfaces& surfaces, const core::Ranks<3>& ranks = {}, int axis = 0);
 
 /// Flow rate of the suspending fluid alone, G H^3 / (12 mu) of plane Poiseuille flow, over `flow_rate` (lattice): the
 /// relative apparent viscosity of a driven suspension. Not a number where nothing flows but rounding.

@@ -147,7 +147,7 @@ struct Snapshot {
   double mean_velocity = 0;         ///< m/s, of a driven channel: the flow rate over the cross-section; NaN elsewhere
   double discharge_hematocrit = 0;  ///< flux of cells over the flow rate; NaN where there is none, or no cells
   double inlet_flow = std::numeric_limits<double>::quiet_NaN(),
-         outlet_flow = inlet_flow;  ///< m2/s, in three dimensions m3/s, along +x; NaN without openings
+         outlet_flow = inlet_flow;  ///< m2/s, in three dimensions m3/s, along the open axis; NaN without openings
   double inlet_pressure = inlet_flow, outlet_pressure = inlet_flow;  ///< Pa, likewise
   std::array<std::vector<double>, 2> opening_flow{};                 ///< of each opening of both ends, as inlet_flow
   double cell_free_layer_lower = 0, cell_free_layer_upper = 0;       ///< m; NaN without walls or cells

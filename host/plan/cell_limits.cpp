@@ -54,7 +54,8 @@ void add_compression(const LimitedStage& of, LimitList& limits) {
   }
   if (of.stage.openings) {  // from one to the other
     limits.below("compression of cells by the pressure between openings" + of.where,
-                 compression_by_pressure * std::abs(of.stage.body_force.x()) * of.scene.domain.nodes[0],
+                 compression_by_pressure * std::abs(of.stage.body_force[of.scene.domain.open_axis]) *
+                     of.scene.domain.nodes[of.scene.domain.open_axis],
                  largest_compression_by_shear, of.lower + ": pressure compresses the lattice's fluid", of.density);
   }
 }

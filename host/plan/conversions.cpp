@@ -75,9 +75,10 @@ void add_drive(const scene::Scene& scene, const scene::StageSetting& stage, Rows
   const scene::Vector& force = stage.body_force;
   for (int axis = 0; axis < force.dimension(); ++axis) {
     if (force[axis] == 0) continue;
-    const std::string along = axis == 0 ? "" : std::string(" along ") + scene::axis_names[axis];
-    rows.add((stage.openings && axis == 0 ? "force density that the openings amount to" : "driving force density") +
-                 along + (axis == 0 && stage.stage->mean_velocity ? ", without cells" : ""),
+    const bool of_openings = stage.openings && axis == scene.domain.open_axis;
+    const std::string along = axis == 0 || of_openings ? "" : std::string(" along ") + scene::axis_names[axis];
+    rows.add((of_openings ? "force density that the openings amount to" : "driving force density") + along +
+                 (axis == 0 && stage.stage->mean_velocity ? ", without cells" : ""),
              u.to_si(force[axis], units::dimension::force_density), "N/m3", force[axis]);
   }
   if (stage.oscillation.any()) {
@@ -103,10 +104,12 @@ void add_open_ends(const scene::Scene& scene, Rows& rows) {
   if (domain.has_shapes() ? domain.passages == nullptr : !domain.openings) return;
   const double unit = std::pow(scene::lattice_spacing(scene), domain.dimension() - 1);
   for (const int end : {0, 1}) {
-    const double open = domain.has_shapes() ? domain.passages->open[end] : domain.content() / domain.size.x();
+    const double open =
+        domain.has_shapes() ? domain.passages->open[end] : domain.content() / domain.size[domain.flow_axis()];
     const std::string name = !domain.openings ? "" : end == 0 ? ", the inlet" : ", the outlet";
-    rows.add(std::string("open at the ") + (end == 0 ? "lower" : "upper") + " end along x" + name, open,
-             domain.in_plane() ? "m" : "m2", open / unit);
+    rows.add(std::string("open at the ") + (end == 0 ? "lower" : "upper") + " end along " +
+                 scene::axis_names[domain.flow_axis()] + name,
+             open, domain.in_plane() ? "m" : "m2", open / unit);
     const std::vector<scene::OpenPart> parts = scene::open_parts(scene, end);
     int number = 0;
     for (const scene::OpenPart& part : parts.size() > 1 ? parts : std::vector<scene::OpenPart>())

@@ -98,7 +98,7 @@ double steady_flow_error(const scene::Domain& domain, double spacing) {
   if (domain.tube_radius || domain.has_shapes()) return tube_error * square(spacing / (domain.across(1) / 2));
   if (!domain.is_duct()) return 0;
   return duct_error *
-         square(spacing / (domain.periodic[1] ? domain.size.z() : std::min(domain.size.y(), domain.size.z())));
+         square(spacing / (!domain.walled(1) ? domain.size.z() : std::min(domain.size.y(), domain.size.z())));
 }
 
 double flow_start_error(const scene::Domain& domain, double spacing, double tau) {

@@ -81,7 +81,7 @@ OutputEstimate estimate_output(const scene::Scene& scene, const std::vector<scen
     for (const scene::CellPlacement& cell : shape::cells_at_once(scene))
       names += static_cast<double>(scene.cell_types[cell.type].name.size());
     const double of_cell =
-        row::cells + (scene.domain.periodic[1] && !scene.domain.has_shapes() ? 0 : row::wall_gap) + row::aggregates;
+        row::cells + (!scene.domain.walled(1) && !scene.domain.has_shapes() ? 0 : row::wall_gap) + row::aggregates;
     estimate.tables_bytes += estimate.outputs * (cells * of_cell + names + row::sizes);
   }
   return estimate;

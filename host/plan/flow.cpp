@@ -88,7 +88,7 @@ double capsule_left(const FlowStart& start, double relaxation, double strain) {
 CellTravel cell_travel(const scene::Scene& scene, const scene::StageSetting& stage) {
   if (scene.fluid.inertia || scene.cells.empty() || !scene::has_walls(scene.domain)) return {};
   const scene::Domain& domain = scene.domain;
-  const int across = domain.periodic[1] ? 2 : 1;
+  const int across = domain.walled(1) ? 1 : 2;
   const double spacing = stage.units.length, height = scene::wall_distance(domain) / spacing;
   const double viscosity = core::viscosity_of(stage.tau);
   double cell_radius = 0;
@@ -132,14 +132,14 @@ bool follows_cells(const scene::Scene& scene, const scene::StageSetting& stage) 
   if (scene.fluid.inertia || scene.cells.empty() || !frame_follows[scene.domain.dimension() - 2]) return false;
   if (scene.domain.has_shapes() || scene.domain.is_open()) return false;  // cells do not travel together
   // Between no walls a driven fluid goes faster and faster, and cells with it.
-  return scene.domain.periodic[1] ? stage.is_driven() : cell_travel(scene, stage).mean > follows_from;
+  return !scene.domain.walled(1) ? stage.is_driven() : cell_travel(scene, stage).mean > follows_from;
 }
 
 double fastest_driven_speed(const scene::StageSetting& stage, const scene::Scene& scene) {
   const double height = scene::wall_distance(scene.domain) / stage.units.length;
   const double viscosity = core::viscosity_of(scene.numerics.tau), drive = stage.largest_drive(scene.domain);
   if (scene.domain.tube_radius) return drive * height * height / (16 * viscosity);
-  if (scene.fluid.layers.empty() || scene.domain.periodic[1]) return drive * height * height / (8 * viscosity);
+  if (scene.fluid.layers.empty() || !scene.domain.walled(1)) return drive * height * height / (8 * viscosity);
   double fastest = 0;
   const std::vector<double> rows = core::viscosity_of_rows(scene::lattice_layers(scene), scene.domain.nodes[1]);
   for (const core::ProfilePoint& point : core::layered_profile(rows, viscosity, {}, drive))

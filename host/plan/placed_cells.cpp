@@ -112,11 +112,11 @@ class PlacementChecker {
                          ", more than the periodic length of the domain, " + micrometres(domain_.period(k)) +
                          "; make the domain longer.");
       }
-      const double kept = k == 0 ? scene::kept_from_openings : 0;
+      const double kept = k == domain_.open_axis ? scene::kept_from_openings : 0;
       const double below = kept - 0.5 - box.least[k], above = box.most[k] - (domain_.size[k] - 0.5 - kept);
       if (below < 0 && above < 0) continue;
       const double by = below < 0 ? above : below;
-      if (k == 0)
+      if (k == domain_.open_axis)
         refuse(cell, std::string(" is too near the ") + (below < 0 ? "outlet" : "inlet") + " by " + micrometres(by) +
                          ": cells keep " + micrometres(kept) + ", six lattice spacings, from it; move it.");
       refuse(cell, std::string(" sticks through the ") + (below < 0 ? "upper" : "lower") + " wall across " +

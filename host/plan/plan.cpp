@@ -20,7 +20,7 @@ void check_developed_flows(const Models& models) {
     };
     if (!scene::has_walls(domain))
       refuse("\"developed\" wants walls: a driven flow that no wall holds never becomes steady; leave start out");
-    if (domain.periodic[1] || stage.largest_drive(domain) != stage.largest_body_force().x())
+    if (!domain.walled(1) || stage.largest_drive(domain) != stage.largest_body_force().x())
       refuse(
           "\"developed\" is known of a flow along x between walls across y alone; leave start out, or turn the scene "
           "so that the force acts along x");

@@ -110,7 +110,7 @@ void complete_feed(scene::Scene& scene) {
   constexpr double diameters = 2;
   scene::Feed& feed = *scene.domain.openings->front().cells;
   if (feed.length == 0) feed.length = diameters * 2 * shape::shape_radius(scene.cell_types[feed.type].shape);
-  const double size = scene.domain.size.x();
+  const double size = scene.domain.size[scene.domain.open_axis];
   if (feed.length <= size / 2) return;
   throw Error(Cause::bad_input, scene.place(feed.pointer),
               "cells appear within " + number(feed.length * 1e6, 6) + " um behind the inlet, and the domain is " +
@@ -178,10 +178,11 @@ void require_passages(const scene::Scene& scene) {
   const auto drives = [&](const scene::Stage& stage) {
     return scene::driving_force(stage, scene).x() != 0 || stage.changes();
   };
-  if (scene.domain.openings && !passages.through_x)
+  if (scene.domain.openings && !passages.through)
     refuse("these walls leave no way from the inlet to the outlet",
-           "let their opening begin at the domain's lower end along x and reach to its upper end");
-  if (!passages.through_x && std::any_of(scene.stages.begin(), scene.stages.end(), drives))
+           std::string("let their opening begin at the domain's lower end along ") +
+               scene::axis_names[scene.domain.open_axis] + " and reach to its upper end");
+  if (!scene.domain.openings && !passages.through && std::any_of(scene.stages.begin(), scene.stages.end(), drives))
     refuse("a flow is driven along x, and these walls leave no way through the domain from one end to the other",
            "open a way, or leave out what drives the flow");
 }

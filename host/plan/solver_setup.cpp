@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "constants.hpp"
+#include "core/fluid/openings/section.hpp"
 #include "core/geometry/border_of_region.hpp"
 #include "core/geometry/parts.hpp"
 #include "placed_cells.hpp"
@@ -20,25 +21,20 @@ namespace rouleau::plan {
 
 namespace {
 
-/// The true area of the section at the first nodes along x, over that of its fluid nodes.
+/// The true area of the section at the first nodes along the open axis, over that of its fluid nodes.
 template <int D>
 double inlet_share(const scene::Scene& scene, const LatticeWalls<D>& walls) {
   const core::Domain<D> domain = scene::lattice_domain<D>(scene);
-  core::Domain<D> column = domain;
-  column.block.end[0] = 1;
+  const core::SectionNodes<D> section(domain);
   double nodes = 0, area = 0;
-  for (int i = 0; i < row_count(column.block); ++i) {
-    std::array<int, D> node{};
-    const auto row = row_of(column.block, i);
-    std::copy(row.begin(), row.end(), node.begin() + 1);
-    nodes += walls.solid->at(node) ? 0 : 1;
-  }
+  for (int i = 0; i < section.count(); ++i) nodes += walls.solid->at(section.node(i, 0)) ? 0 : 1;
   if (scene.domain.tube_radius) {
     area = std::numbers::pi * std::pow(*scene.domain.tube_radius / scene::lattice_spacing(scene), 2);
   } else {
     constexpr double half_of_slice = 1e-3;
     core::Vec<D> middle = core::Vec<D>::Zero(), half = core::Vec<D>::Constant(half_of_slice);
-    for (int k = 1; k < D; ++k) half[k] = 0.5 * domain.size[k], middle[k] = half[k] - 0.5;
+    for (int k = 0; k < D; ++k)
+      if (k != section.axis()) half[k] = 0.5 * domain.size[k], middle[k] = half[k] - 0.5;
     area = core::content_of<D>(*walls.region, middle, half, shape::content_halvings) / (2 * half_of_slice);
   }
   if (nodes == 0)
@@ -150,6 +146,8 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index, const L
   const scene::StageSetting& stage = plan.stages[index];
   const StageModels& made = *plan.made[index];
 
+  scene::Vector body_force = stage.body_force;
+  if (stage.openings) body_force[scene.domain.open_axis] = 0;
   core::BasicSolverSetup<D> setup{
       .domain = scene::lattice_domain<D>(scene),
       .openings = stage.openings,
@@ -162,9 +160,9 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index, const L
       .inertia = scene.fluid.inertia,
       .follow_cells = plan.facts.stages[index].follows_cells,
       .walls = stage.walls,
-      .body_force_x = stage.openings ? 0 : stage.body_force.x(),
-      .body_force_y = stage.body_force.y(),
-      .body_force_z = stage.body_force.z(),
+      .body_force_x = body_force.x(),
+      .body_force_y = body_force.y(),
+      .body_force_z = body_force.z(),
       .oscillation = stage.oscillation,
       // Without cells the gradient that this flow takes is known.
       .mean_velocity = (plan.has_cells || scene.domain.has_shapes()) && stage.stage->mean_velocity

@@ -22,6 +22,7 @@ Inflow<D>::Inflow(const plan::Plan& plan, int stage, const core::BasicSolverSetu
     : feed_(plan.scene->domain.feed()),
       none_(plan::without_cells<D>(*plan.scene, scene::lattice_spacing(*plan.scene))),
       domain_(scene::lattice_domain<D>(*plan.scene)),
+      axis_(domain_.open_axis),
       region_(setup.region),
       most_(static_cast<int>(plan.scene->fed)),
       origin_(0 * plan.scene->domain.size),
@@ -32,9 +33,9 @@ Inflow<D>::Inflow(const plan::Plan& plan, int stage, const core::BasicSolverSetu
   const bool by_velocity = inlet.kind == core::Opening::Kind::velocity;
   const double mean = by_velocity ? inlet.value : section.mean_driven + section.mean_dragged;
   double sum = 0, nodes = 0;
-  for (std::size_t row = 0; row < section.driven.size(); ++row) {
-    flux_.push_back(sum += std::max(0.0, section.velocity(row, mean)));
-    nodes += section.driven[row] != 0 ? 1 : 0;
+  for (std::size_t node = 0; node < section.driven.size(); ++node) {
+    flux_.push_back(sum += std::max(0.0, section.velocity(node, mean)));
+    nodes += section.driven[node] != 0 ? 1 : 0;
   }
   cells_per_content_ = feed_->hematocrit / shape::enclosed_by(plan.scene->cell_types[feed_->type]);
   // The mean is that over the nodes, and gives the flow through the true section.
@@ -77,23 +78,24 @@ std::vector<core::Cells<D>> Inflow<D>::places(int cell, double time, double come
 /// From the origin, where a cell with this box lies half a spacing below it, to where it comes in.
 template <int D>
 core::Vec<D> Inflow<D>::way_in(const core::BoundingBox<D>& box, shape::RandomNumbers& numbers) const {
-  const double room = feed_->length / spacing_ - 0.5 - lowest() - (box.most[0] - box.least[0]);
+  const double room = feed_->length / spacing_ - 0.5 - lowest() - (box.most[axis_] - box.least[axis_]);
   core::Vec<D> by;
-  by[0] = lowest() - box.least[0] + numbers.below_one() * std::max(0.0, room);
-  // Along one axis after another, the last first: rows [first, first + count) lie at what has been drawn so far.
+  by[axis_] = lowest() - box.least[axis_] + numbers.below_one() * std::max(0.0, room);
+  // Along one axis after another, the last first: nodes [first, first + count) lie at what has been drawn so far.
   std::size_t first = 0, count = flux_.size();
-  for (int k = D - 1; k > 0; --k) {
-    const std::size_t rows = count / static_cast<std::size_t>(domain_.size[k]);  // at each place along it
+  for (int k = D - 1; k >= 0; --k) {
+    if (k == axis_) continue;
+    const std::size_t nodes = count / static_cast<std::size_t>(domain_.size[k]);  // at each place along it
     const auto up_to = [&](std::size_t place) {
-      const std::size_t end = first + place * rows;
+      const std::size_t end = first + place * nodes;
       return end == 0 ? 0 : flux_[end - 1];
     };
-    const double wanted = up_to(0) + numbers.below_one() * (up_to(count / rows) - up_to(0));
+    const double wanted = up_to(0) + numbers.below_one() * (up_to(count / nodes) - up_to(0));
     std::size_t place = 0;
-    while (place + 1 < count / rows && !(wanted < up_to(place + 1))) ++place;
+    while (place + 1 < count / nodes && !(wanted < up_to(place + 1))) ++place;
     const double within = up_to(place + 1) - up_to(place);
     by[k] = static_cast<double>(place) + (within > 0 ? (wanted - up_to(place)) / within : 0);
-    first += place * rows, count = rows;
+    first += place * nodes, count = nodes;
   }
   return by;
 }
@@ -109,25 +111,25 @@ template <int D>
 double Inflow<D>::draw_back(core::Cells<D>& cell) const {
   const core::BoundingBox<D> box = core::box_of<D>(cell, 0);
   core::Vec<D> back = core::Vec<D>::Zero();
-  back[0] = lowest() - box.least[0];
+  back[axis_] = lowest() - box.least[axis_];
   move(cell, back);
-  return std::max(0.0, feed_->length / spacing_ - 0.5 - (box.most[0] + back[0]));
+  return std::max(0.0, feed_->length / spacing_ - 0.5 - (box.most[axis_] + back[axis_]));
 }
 
 template <int D>
 bool Inflow<D>::fits(const core::Cells<D>& cell) const {
   const core::BoundingBox<D> box = core::box_of<D>(cell, 0);
-  for (int k = 1; k < D; ++k) {
+  for (int k = 0; k < D; ++k) {
     if (domain_.periodic[k] && !(box.most[k] - box.least[k] + kept_apart < domain_.period(k))) return false;
   }
-  if (!(box.least[0] >= lowest() && box.most[0] < highest())) return false;
+  if (!(box.least[axis_] >= lowest() && box.most[axis_] < highest())) return false;
   return !(core::wall_gap(cell, cell.cells[0], domain_, region_.get()) < kept_apart);
 }
 
 template <int D>
 double Inflow<D>::way(const core::Cells<D>& cell, const core::Cells<D>& others, int other, double most) const {
   core::BoundingBox<D> box = core::box_of<D>(cell, 0), its = core::box_of<D>(others, other);
-  box.most[0] += most;
+  box.most[axis_] += most;
   if (core::distance_along_axes(box, its, domain_) > kept_apart) return most;
   core::Vec<D> nearest;  // the image of the other one
   for (int k = 0; k < D; ++k) {
@@ -136,10 +138,10 @@ double Inflow<D>::way(const core::Cells<D>& cell, const core::Cells<D>& others, 
   }
   // Along a short period the images on both sides of it are near, too.
   int images = 1;
-  for (int k = 1; k < D; ++k) images *= domain_.periodic[k] ? 3 : 1;
+  for (int k = 0; k < D; ++k) images *= domain_.periodic[k] ? 3 : 1;
   for (int image = 0; image < images && most >= 0; ++image) {
     core::Vec<D> move = nearest;
-    for (int k = 1, rest = image; k < D; ++k) {
+    for (int k = 0, rest = image; k < D; ++k) {
       if (!domain_.periodic[k]) continue;
       move[k] += (rest % 3 - 1) * domain_.period(k);
       rest /= 3;
@@ -158,7 +160,7 @@ double Inflow<D>::way_beside(const core::Cells<D>& cell, const core::Cells<D>& o
     return place;
   };
   core::BoundingBox<D> box = core::box_of<D>(cell, 0);
-  box.most[0] += most;
+  box.most[axis_] += most;
   const core::CellRange& range = others.cells[other];
   for (int i = range.first; i < range.end(); ++i) {
     const core::Vec<D> place = node(others, i) + move;
@@ -167,8 +169,8 @@ double Inflow<D>::way_beside(const core::Cells<D>& cell, const core::Cells<D>& o
       near = near && place[k] > box.least[k] - kept_apart && place[k] < box.most[k] + kept_apart;
     for (int j = 0; near && j < cell.node_count(); ++j) {
       core::Vec<D> apart = place - node(cell, j);
-      const double ahead = apart[0];
-      apart[0] = 0;
+      const double ahead = apart[axis_];
+      apart[axis_] = 0;
       const double beside = kept_apart * kept_apart - apart.squaredNorm();
       if (ahead * ahead < beside) return -1;
       if (beside > 0 && ahead > 0) most = std::min(most, ahead - std::sqrt(beside));

@@ -56,8 +56,9 @@ void Traffic<D>::find_gone() {
   const auto& cells = engine_.cells();
   for (const int c : cells.own_cells()) {
     const core::BoundingBox<D> box = core::box_of<D>(cells, c);
-    const bool at_upper = box.most[0] > inflow().highest(),
-               at_lower = box.least[0] < inflow().lowest() - below_arrivals;
+    const int axis = inflow().axis();
+    const bool at_upper = box.most[axis] > inflow().highest(),
+               at_lower = box.least[axis] < inflow().lowest() - below_arrivals;
     const int end = at_upper ? upper_end : lower_end;
     if (at_upper || at_lower) mine.push_back({c, end, opening_at(end, cells, cells.cells[c])});
   }
@@ -98,7 +99,7 @@ auto Traffic<D>::free_place(int cell, double time) -> std::optional<typename Eng
     const auto best = std::max_element(far.begin(), far.end());
     if (*best < 0) break;
     core::Vec<D> along = core::Vec<D>::Zero();
-    along[0] = std::exchange(*best, -1);
+    along[inflow().axis()] = std::exchange(*best, -1);
     auto& attempt = tries[static_cast<std::size_t>(best - far.begin())];
     inflow().move(attempt, along);
     if (inflow().fits(attempt)) return std::move(attempt);
@@ -140,12 +141,15 @@ int Traffic<D>::opening_at(int end, const core::Cells<D>& cells, const core::Cel
   if (parts_of_ends_[0].empty()) parts_of_ends_ = core::parts_of_ends(domain, setup.solid.get());
   const std::vector<int>& openings = parts_of_ends_[end];
   for (int i = cell.first; i < cell.end(); ++i) {
-    int row = 0;
-    for (int k = D - 1; k > 0 && row >= 0; --k) {
-      const int place = domain.wrapped(k, static_cast<int>(std::lround(cells.position[k][i])));
-      row = place < 0 ? -1 : row * domain.size[k] + place;
+    std::array<int, D> node{};
+    bool inside = true;
+    for (int k = 0; k < D; ++k) {
+      if (k == domain.open_axis) continue;
+      node[k] = domain.wrapped(k, static_cast<int>(std::lround(cells.position[k][i])));
+      inside = inside && node[k] >= 0;
     }
-    if (row >= 0 && openings[row] >= 0) return openings[row];
+    if (!inside) continue;
+    if (const int opening = openings[core::SectionNodes<D>(domain).number(node)]; opening >= 0) return opening;
   }
   return 0;
 }

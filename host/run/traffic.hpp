@@ -19,7 +19,7 @@ class Traffic {
  public:
   using Arrival = typename Engine<D>::Arrival;
   struct Departure {
-    int cell, end, opening;  ///< through the lower end of x, 0, or the upper one, 1, and which opening there
+    int cell, end, opening;  ///< through the lower end, 0, or the upper one, 1, and which opening there
   };
   struct Change {
     std::vector<Departure> gone;
@@ -53,7 +53,7 @@ class Traffic {
   void find_come(double time);
   /// The first of these places that is free on all ranks; none: none is.
   [[nodiscard]] std::optional<typename Engine<D>::Cells> free_place(int cell, double time);
-  /// How far each cell can move along x, at most so far, before it comes too near another one on any rank.
+  /// How far each cell can move along the open axis, at most so far, before it comes too near another one on any rank.
   [[nodiscard]] std::vector<double> ways(const std::vector<typename Engine<D>::Cells>& cells, std::vector<double> most);
 
   const plan::Plan& plan_;

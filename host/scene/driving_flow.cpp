@@ -53,9 +53,9 @@ double opening_drive(const Scene& scene) {
   const Domain& domain = scene.domain;
   if (!domain.openings || !has_walls(domain)) return 0;
   const auto& [inlet, outlet] = *domain.openings;
-  if (inlet.pressure) return (*inlet.pressure - *outlet.pressure) / domain.size.x();
+  if (inlet.pressure) return (*inlet.pressure - *outlet.pressure) / domain.size[domain.open_axis];
   // Of a developed flow, the largest velocity over the mean one: no more in any usual section.
-  const bool in_plane_flow = domain.in_plane() || (!domain.has_shapes() && !(domain.is_duct() && !domain.periodic[1]));
+  const bool in_plane_flow = domain.in_plane() || (!domain.has_shapes() && !(domain.is_duct() && domain.walled(1)));
   const double peak = domain.tube_radius ? 2 : in_plane_flow ? 1.5 : 2.25;
   const double narrower =
       domain.passages && domain.passages->least_open > 0 ? domain.passages->open[0] / domain.passages->least_open : 1;
@@ -72,18 +72,17 @@ Vector driving_force(const Stage& stage, const Scene& scene) {
     const double height = scene.domain.across(1), share = scene.domain.has_shapes() ? 1 : duct_share(scene.domain);
     force.x() = 12 * channel_viscosity(scene) * *stage.mean_velocity / (height * height * share);
   }
-  force.x() += opening_drive(scene);
+  force[scene.domain.flow_axis()] += opening_drive(scene);
   return force;
 }
 
-bool has_walls(const Domain& domain) { return !domain.periodic[1] || domain.is_duct() || domain.has_shapes(); }
+bool has_walls(const Domain& domain) { return domain.walled(1) || domain.is_duct() || domain.has_shapes(); }
 
-double wall_distance(const Domain& domain) { return domain.across(domain.periodic[1] && domain.is_duct() ? 2 : 1); }
+double wall_distance(const Domain& domain) { return domain.across(!domain.walled(1) && domain.is_duct() ? 2 : 1); }
 
 Vector unheld(Vector force, const Domain& domain) {
-  for (std::size_t axis = 1; axis < domain.periodic.size(); ++axis) {  // an opening holds nothing
-    if (!domain.periodic[axis]) force[axis] = 0;
-  }
+  for (int axis = 1; axis < 3; ++axis)  // an opening holds nothing
+    if (domain.walled(axis)) force[axis] = 0;
   return force;
 }
 

@@ -18,7 +18,9 @@ core::Domain<D> lattice_domain(const Scene& scene) {
   std::array<bool, D> periodic;
   std::copy_n(scene.domain.nodes.begin(), D, nodes.begin());
   std::copy_n(scene.domain.periodic.begin(), D, periodic.begin());
-  return {nodes, periodic};
+  core::Domain<D> domain(nodes, periodic);
+  domain.open_axis = scene.domain.open_axis;
+  return domain;
 }
 template core::Domain<2> lattice_domain(const Scene&);
 template core::Domain<3> lattice_domain(const Scene&);
@@ -83,13 +85,15 @@ std::vector<OpenPart> parts_at(const Scene& scene, int end) {
   const core::Domain<D> domain = lattice_domain<D>(scene);
   const core::RegionPointer<D> region = fluid_region<D>(scene);
   const double spacing = lattice_spacing(scene);
+  const int axis = domain.flow_axis();
   std::vector<OpenPart> found;
-  std::vector<Vector> places;  // of all nodes, row after row
+  std::vector<Vector> places;  // of all nodes of the section
   const std::vector<int> parts = core::parts_of_section<D>(domain, end, [&](const std::array<int, D>& node) {
     core::Vec<D> place;
-    Vector at = Vector::filled(D, end == 0 ? 0 : scene.domain.size[0]);
+    Vector at = Vector::filled(D, end == 0 ? 0 : scene.domain.size[axis]);
     for (int k = 0; k < D; ++k) place[k] = node[k];
-    for (int k = 1; k < D; ++k) at[k] = units::coordinate(node[k], spacing);
+    for (int k = 0; k < D; ++k)
+      if (k != axis) at[k] = units::coordinate(node[k], spacing);
     places.push_back(at);
     return !region || region->distance(place).value > 0;
   });
@@ -100,7 +104,8 @@ std::vector<OpenPart> parts_at(const Scene& scene, int end) {
     if (part == static_cast<int>(found.size())) found.push_back({0, places[row]});
     OpenPart& of = found[part];
     of.area += of_node;
-    for (int k = 1; k < D; ++k) {  // the mean of the images that lie nearest to it
+    for (int k = 0; k < D; ++k) {  // the mean of the images that lie nearest to it
+      if (k == axis) continue;
       double apart = places[row][k] - of.at[k];
       if (domain.periodic[k]) apart -= scene.domain.size[k] * std::round(apart / scene.domain.size[k]);
       of.at[k] += apart * of_node / of.area;

@@ -29,7 +29,7 @@ core::Domain<D> lattice_domain(const Scene& scene);
 template <int D>
 core::RegionPointer<D> fluid_region(const Scene& scene);
 
-/// One of the openings that an end of x has beside each other.
+/// One of the openings that an end of the flow axis has beside each other.
 struct OpenPart {
   double area;  ///< m2, or m in two dimensions
   Vector at;    ///< its middle, m

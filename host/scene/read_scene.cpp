@@ -45,7 +45,17 @@ void read_ends(const SceneFields& fields, Domain& domain, int axis) {
     fields.refuse_key(key, "there is no z in two dimensions\ngive size and nodes three numbers, or leave z out");
   }
   const auto ends = fields.value<nlohmann::json>(key);
+  const bool inlet = fields.has(key + "/lower/inlet"), outlet = fields.has(key + "/upper/outlet");
   domain.periodic[axis] = axis == 0 ? !ends.is_object() : ends.is_string();
+  if (inlet != outlet && axis > 0)
+    fields.refuse(key, std::string("what has an ") +
+                           (inlet ? "inlet below has an outlet above" : "outlet above has an inlet below") +
+                           "\ngive both ends walls, or an inlet and an outlet");
+  if (domain.periodic[axis] || !(axis == 0 || inlet)) return;
+  if (domain.is_open())
+    fields.refuse(key, std::string("the domain is open along ") + axis_names[domain.open_axis] +
+                           " already, and one axis may be\nlet this be \"periodic\"" + (axis > 0 ? ", or walls" : ""));
+  domain.open_axis = axis;
 }
 
 /// As many as there are sides.
@@ -255,10 +265,11 @@ std::array<int, 2> read_between(const SceneFields& fields, const std::string& po
     if (fields.at(pointer + which) == self_name) return Interaction::self;
     if (fields.at(pointer + which) != wall_name)
       return fields.cell_type(pointer + which, types, {wall_name, self_name});
-    if (!domain.periodic[1] || domain.has_shapes()) return Interaction::wall;
-    fields.refuse(pointer + which,
-                  "there is no wall, for domain.y is \"periodic\"\nwrite \"y\": {\"lower\": {\"wall\": {}}, "
-                  "\"upper\": {\"wall\": {}}}, or leave this interaction out");
+    if (domain.walled(1) || domain.has_shapes()) return Interaction::wall;
+    fields.refuse(pointer + which, std::string("there is no wall, for domain.y is ") +
+                                       (domain.periodic[1] ? "\"periodic\"" : "open") +
+                                       "\nwrite \"y\": {\"lower\": {\"wall\": {}}, "
+                                       "\"upper\": {\"wall\": {}}}, or leave this interaction out");
   };
   int a = 0, b = 0;
   fields.attempt([&] { a = side("/0"); });

@@ -43,9 +43,9 @@ struct Passages {
   Vector narrowest_at = {};                     ///< m
   double apart = 0;                             ///< nodes that no way leads to from most others
   Vector apart_at = {};                         ///< one of them, m
-  bool through_x = true;            ///< whether a way leads through a period along x, or from inlet to outlet
-  std::array<double, 2> open = {};  ///< m2, or m in two dimensions, at the lower end along x and the upper one
-  double least_open = 0;            ///< the same at the place along x where it is least
+  bool through = true;              ///< whether a way leads through a period along x, or from inlet to outlet
+  std::array<double, 2> open = {};  ///< m2, or m in two dimensions, at the lower end of the flow axis and the upper one
+  double least_open = 0;            ///< the same at the place along it where it is least
   double beside_walls = 0;          ///< nodes of the fluid within a spacing of walls of a shape
 };
 
@@ -58,7 +58,7 @@ struct Feed {
   std::string pointer;
 };
 
-/// What an end of the domain along x is kept at: a pressure or a mean velocity.
+/// What an open end of the domain is kept at: a pressure or a mean velocity.
 struct Opening {
   std::optional<double> mean_velocity = {};  ///< m/s into the domain, over the open part of its end
   std::optional<double> pressure = {};       ///< Pa
@@ -69,10 +69,11 @@ struct Opening {
 struct Domain {
   Vector size{0, 0};                ///< m, along two axes or three
   std::vector<int> nodes = {0, 0};  ///< of the lattice along each axis; the spacing is the same along all
-  /// Inlet and outlet, at the lower and the upper end along x; none: x is periodic.
+  /// Inlet and outlet, at the lower and the upper end of the open axis; none: no axis is open.
   std::optional<std::array<Opening, 2>> openings = {};
-  /// By axis; false: solid walls at both ends, or along x openings. z is where there is none.
+  /// By axis; false: solid walls at both ends, or openings. z is where there is none.
   std::array<bool, 3> periodic{true, false, true};
+  int open_axis = -1;  ///< that fluid goes through the ends of; -1: none
   /// Of a tube along x through the middle, in place of walls across y and z, m; in three dimensions.
   std::optional<double> tube_radius = {};
   /// All outside of `within`, and all inside of an obstacle, is wall, beside whatever lies across y and z.
@@ -102,8 +103,12 @@ struct Domain {
     if (has_shapes()) return region_content;
     return size.product();
   }
-  /// Whether fluid goes through the ends along x; `openings` may be wrong still.
-  [[nodiscard]] bool is_open() const { return !periodic[0]; }
+  /// Whether fluid goes through the ends of an axis; `openings` may be wrong still.
+  [[nodiscard]] bool is_open() const { return open_axis >= 0; }
+  /// That a flow from end to end goes along: the open one, else x.
+  [[nodiscard]] int flow_axis() const { return is_open() ? open_axis : 0; }
+  /// Whether there are solid walls at both ends of an axis.
+  [[nodiscard]] bool walled(int axis) const { return !periodic[axis] && axis != open_axis; }
   /// The cells that come in; null: none do.
   [[nodiscard]] const Feed* feed() const { return openings && (*openings)[0].cells ? &*(*openings)[0].cells : nullptr; }
   [[nodiscard]] bool has_shapes() const { return within || !obstacles.empty(); }
@@ -116,7 +121,7 @@ struct Domain {
     return std::get<core::RegionPointer<D>&>(std::tie(region_in_plane, region_in_space));
   }
   /// Whether walls close it along z, too.
-  [[nodiscard]] bool is_duct() const { return !periodic[2]; }
+  [[nodiscard]] bool is_duct() const { return walled(2); }
   /// From wall to wall along y or z, m; at the widest place between walls of any shape.
   [[nodiscard]] double across(int axis) const {
     return tube_radius ? 2 * *tube_radius : has_shapes() ? region_width : size[axis];

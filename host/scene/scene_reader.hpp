@@ -169,7 +169,7 @@ inline bool is_known(const Domain& domain) { return domain.size.is_finite() && d
 /// Shapes that the fluid lies within and obstacles; which of the axes y and z are periodic then. The domain's size and
 /// nodes are read before.
 void read_wall_shapes(const SceneFields& fields, Domain& domain);
-/// What the ends along x are kept at, where domain.x has any.
+/// What the ends of the open axis are kept at, where there is one.
 void read_openings(const SceneFields& fields, const std::vector<CellType>& types, Domain& domain);
 /// Refuses what there is no way to have between openings.
 void check_openings(const SceneFields& fields, const Scene& scene);

@@ -71,10 +71,11 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
                                                              : "walls do not move where others are of any shape") +
                             "\ngive pressure_gradient or mean_velocity in place of " + key);
     }
-    if (!scene.domain.periodic[1]) continue;
+    if (scene.domain.walled(1)) continue;
     fields.refuse_key(pointer + "/" + key,
-                      "shear needs walls that move, but domain.y is \"periodic\"\n"
-                      "write \"y\": {\"lower\": {\"wall\": {}}, \"upper\": {\"wall\": {}}}, or leave out " +
+                      std::string("shear needs walls that move, but domain.y is ") +
+                          (scene.domain.periodic[1] ? "\"periodic\"" : "open") +
+                          "\nwrite \"y\": {\"lower\": {\"wall\": {}}, \"upper\": {\"wall\": {}}}, or leave out " +
                           std::string(key));
   }
   check_mean_velocity(fields, stage, scene);

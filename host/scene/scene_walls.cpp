@@ -265,8 +265,8 @@ Feed read_feed(const SceneFields& fields, const std::string& pointer, const std:
           .pointer = pointer};
 }
 
-Opening read_inlet(const SceneFields& fields, const std::vector<CellType>& types) {
-  Opening inlet{.pointer = "/domain/x/lower/inlet"};
+Opening read_inlet(const SceneFields& fields, const std::string& axis, const std::vector<CellType>& types) {
+  Opening inlet{.pointer = axis + "/lower/inlet"};
   const std::string velocity = inlet.pointer + "/mean_velocity", pressure = inlet.pointer + "/pressure",
                     cells = inlet.pointer + "/cells";
   const bool by_velocity = fields.has(velocity);
@@ -298,13 +298,15 @@ Opening read_inlet(const SceneFields& fields, const std::vector<CellType>& types
 
 void read_openings(const SceneFields& fields, const std::vector<CellType>& types, Domain& domain) {
   if (!domain.is_open()) return;
-  const std::string outlet = "/domain/x/upper/outlet";
+  const std::string axis = std::string("/domain/") + axis_names[domain.open_axis], outlet = axis + "/upper/outlet";
   Opening upper{.pressure = fields.quantity(outlet + "/pressure", "Pa", range::pressure), .pointer = outlet};
-  domain.openings = {read_inlet(fields, types), std::move(upper)};
+  domain.openings = {read_inlet(fields, axis, types), std::move(upper)};
 }
 
 void check_openings(const SceneFields& fields, const Scene& scene) {
   if (!scene.domain.is_open()) return;
+  const int axis = scene.domain.open_axis;
+  const std::string name(1, axis_names[axis]), pointer = "/domain/" + name;
   const auto refuse_key = [&](const std::string& key, const std::string& problem) {
     fields.attempt([&] {
       if (fields.has(key)) fields.refuse_key(key, problem);
@@ -312,30 +314,37 @@ void check_openings(const SceneFields& fields, const Scene& scene) {
   };
   refuse_key("/fluid/layers", "the flow that comes in through an opening knows of no layers\nleave the layers out");
   fields.attempt([&] {
-    if (scene.fluid.body_force.x() == 0) return;
-    fields.refuse("/fluid/body_force/0",
-                  "between openings pressure and mean velocity drive the flow along x\nlet this be 0");
+    if (scene.fluid.body_force[axis] == 0) return;
+    fields.refuse("/fluid/body_force/" + std::to_string(axis),
+                  "between openings pressure and mean velocity drive the flow along " + name + "\nlet this be 0");
   });
   fields.attempt([&] {
     if (!scene.domain.openings || !scene.domain.openings->front().pressure || has_walls(scene.domain)) return;
-    fields.refuse("/domain/x/lower/inlet/pressure",
-                  "between two pressures a fluid without walls has nothing that could hold it\n"
-                  "close y, or give the inlet a mean_velocity");
+    fields.refuse(pointer + "/lower/inlet/pressure",
+                  "between two pressures a fluid without walls has nothing that could hold it\n" +
+                      std::string(axis == 1 ? "put walls in its way" : "close y") +
+                      ", or give the inlet a mean_velocity");
   });
   fields.attempt([&] {
     if (scene.domain.shape_speed > 0)
-      fields.refuse("/domain/x",
-                    "the flow through openings knows of no walls of a shape that move\nlet x be periodic, "
-                    "or leave velocity and angular_velocity out of the shapes");
+      fields.refuse(pointer, "the flow through openings knows of no walls of a shape that move\nlet " + name +
+                                 " be periodic, "
+                                 "or leave velocity and angular_velocity out of the shapes");
   });
   for (const Stage& stage : scene.stages) {
     const std::string drives =
         "between openings their pressures or velocity drive the flow, in all stages\nleave this "
-        "out, and give domain.x.lower.inlet what is wanted";
+        "out, and give domain." +
+        name + ".lower.inlet what is wanted";
     for (const char* key : {"pressure_gradient", "mean_velocity"}) refuse_key(stage.pointer + '/' + key, drives);
     refuse_key(stage.pointer + "/oscillation",
                "openings do not oscillate, and neither does what is between them\n"
                "leave this out");
+    fields.attempt([&] {
+      if (axis == 2 && walls_move(stage))
+        fields.refuse(stage.pointer, "these walls move along x, across what flows through the openings along " + name +
+                                         "\nlet them rest, or put the openings at the ends of x");
+    });
     fields.attempt([&] {
       if (stage.start == WallStart::developed)
         fields.refuse(stage.pointer + "/start",

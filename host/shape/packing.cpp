@@ -69,7 +69,7 @@ class Packer {
     for (int k = 0; k < D; ++k) box_[k] = {0, domain.size[k] / unit, domain.periodic[k]};
     if (domain.is_open()) {
       const double kept = scene::kept_from_openings * domain.size.x() / domain.nodes[0] / unit;
-      box_[0] = {kept, domain.size.x() / unit - kept, false};
+      box_[domain.open_axis] = {kept, domain.size[domain.open_axis] / unit - kept, false};
     }
     double least_gap = packings.front().gap;
     for (const scene::RandomPacking& packing : packings) least_gap = std::min(least_gap, packing.gap);

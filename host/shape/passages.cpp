@@ -87,7 +87,7 @@ class Survey {
       for (int k = 0, rest = i; k < D; ++k, rest /= 3) way[k] = rest % 3 - 1;
     }
     layer_.resize(stride_[D - 1]);
-    open_nodes.resize(static_cast<std::size_t>(domain.size[0]));
+    open_nodes.resize(static_cast<std::size_t>(domain.size[domain.flow_axis()]));
     for (Node node{}; node[D - 1] < domain.size[D - 1]; ++node[D - 1]) add_layer(node[D - 1]);
     if (domain.periodic[D - 1]) {
       std::swap(layer_, last_layer_);
@@ -111,7 +111,7 @@ class Survey {
   }
   Pools pools;
   std::vector<long> first_of_run;  ///< nodes
-  std::vector<double> open_nodes;  ///< at each place along x
+  std::vector<double> open_nodes;  ///< at each place along the flow axis
   double beside_walls = 0;         ///< nodes within a spacing of the region's border
 
  private:
@@ -148,19 +148,21 @@ class Survey {
   }
 
   void add_row(long row, int level) {
-    const int size = domain_.size[0];
+    const int size = domain_.size[0], open = domain_.open_axis;
+    const int at = open == D - 1 ? level : static_cast<int>(row);  // along an open axis across x
     const auto is_fluid = [&](int x) { return layer_[row * size + x].value > 0; };
     for (int x = 0; x < size; ++x) {
       if (!is_fluid(x)) continue;
       const int begin = x;
       while (x < size && is_fluid(x)) ++x;
       first_of_run.push_back(level * stride_[D - 1] + row * size + begin);
-      const bool open = !domain_.periodic[0];
-      rows_[row].push_back({begin, x, pools.add(x - begin, {open && begin == 0, open && x == size})});
+      const int first = open == 0 ? begin : at, last = open == 0 ? x - 1 : at;
+      rows_[row].push_back(
+          {begin, x, pools.add(x - begin, {open >= 0 && first == 0, open >= 0 && last == domain_.size[open] - 1})});
     }
-    for (int x = 0; x < size; ++x) open_nodes[static_cast<std::size_t>(x)] += is_fluid(x) ? 1 : 0;
+    for (int x = 0; x < size; ++x) open_nodes[static_cast<std::size_t>(open > 0 ? at : x)] += is_fluid(x) ? 1 : 0;
     if (domain_.periodic[0] && !rows_[row].empty() && is_fluid(0) && is_fluid(size - 1))
-      pools.join(rows_[row].back()[2], rows_[row].front()[2], 1);
+      pools.join(rows_[row].back()[2], rows_[row].front()[2], open > 0 ? 0 : 1);
   }
 
   void join_rows(const Runs& a, const Runs& b) {
@@ -268,8 +270,7 @@ scene::Passages surveyed(const scene::Scene& scene) {
   while (finer < 4 && scene.domain.node_count() * std::pow(finer + 1, D) <= many) ++finer;
   core::Domain<D> domain = scene::lattice_domain<D>(scene);
   for (int& nodes : domain.size) nodes *= finer;
-  const Survey<D> fine(core::magnified<D>(region, finer, Vec<D>::Constant(0.5 * finer - 0.5)),
-                       {domain.size, domain.periodic});
+  const Survey<D> fine(core::magnified<D>(region, finer, Vec<D>::Constant(0.5 * finer - 0.5)), domain.in_one_block());
   if (const auto [narrowest, at] = fine.narrowest(); at >= 0) {
     found.narrowest = narrowest / finer;
     const auto node = fine.node_of(at);
@@ -278,11 +279,11 @@ scene::Passages surveyed(const scene::Scene& scene) {
   }
   double all = 0;
   int largest = -1;
-  found.through_x = false;
+  found.through = false;
   for (int run = 0; run < survey.pools.count(); ++run) {
     if (survey.pools.root(run).first != run) continue;
     all += survey.pools.nodes(run);
-    found.through_x = found.through_x || survey.pools.goes_on(run);
+    found.through = found.through || survey.pools.goes_on(run);
     if (largest < 0 || survey.pools.nodes(run) > survey.pools.nodes(largest)) largest = run;
   }
   if (largest >= 0) found.apart = all - survey.pools.nodes(largest);

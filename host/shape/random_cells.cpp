@@ -66,7 +66,8 @@ double duration_of(const scene::Scene& scene) {
 /// How many cells come in each second at most. Between two pressures, where all of the domain were as wide as at its
 /// widest place, and as fast as the fluid is in the middle.
 double arrivals(const scene::Scene& scene, const scene::Feed& feed) {
-  const double area = scene.domain.size.product() / scene.domain.size.x();  // all of the end is open at most
+  const double area =
+      scene.domain.size.product() / scene.domain.size[scene.domain.open_axis];  // all of the end is open at most
   double velocity = 0;
   if (const auto& inlet = scene.domain.openings->front(); inlet.mean_velocity) {
     velocity = *inlet.mean_velocity;

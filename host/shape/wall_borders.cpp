@@ -51,13 +51,14 @@ core::Border<D> imaged(core::Border<D> border, const core::Domain<D>& domain) {
 /// Of a border that ends at an opening: there it goes on as its own mirror image.
 template <int D>
 core::Border<D> opened(core::Border<D> border, const core::Domain<D>& domain) {
-  if (domain.periodic[0]) return border;
+  const int axis = domain.open_axis;
+  if (axis < 0) return border;
   const core::Border<D> own = border;
   border.facets.clear();
-  const double size = domain.size[0], off = rounding * size;
+  const double size = domain.size[axis], off = rounding * size;
   std::vector<bool> is_end(own.facets.size());
   for (const double plane : {-0.5, size - 0.5}) {
-    const auto at_plane = [&](int corner) { return std::abs(own.corners[corner][0] - plane) <= off; };
+    const auto at_plane = [&](int corner) { return std::abs(own.corners[corner][axis] - plane) <= off; };
     std::vector<bool> here(own.facets.size());
     for (std::size_t i = 0; i < own.facets.size(); ++i)
       here[i] = std::ranges::all_of(own.facets[i], at_plane), is_end[i] = is_end[i] || here[i];
@@ -66,7 +67,7 @@ core::Border<D> opened(core::Border<D> border, const core::Domain<D>& domain) {
     for (int i = 0; i < static_cast<int>(own.corners.size()); ++i) {
       image.push_back(at_plane(i) ? i : static_cast<int>(border.corners.size()));
       Vec<D> corner = own.corners[i];
-      corner[0] = 2 * plane - corner[0];
+      corner[axis] = 2 * plane - corner[axis];
       if (!at_plane(i)) border.corners.push_back(corner);
     }
     for (std::size_t i = 0; i < own.facets.size(); ++i) {
@@ -291,7 +292,7 @@ core::RegionPointer<D> picture_region(const scene::SceneFields& fields, const st
     int before = 1, after = 1;
     std::array<Beyond, 2> beyond{};
     if (wraps) beyond = {Beyond::samples, Beyond::samples};
-    if (const double size = domain.size[k]; k == 0 && !domain.periodic[0]) {  // at openings it goes on, too
+    if (const double size = domain.size[k]; k == domain.open_axis) {  // at openings it goes on, too
       const int half = static_cast<int>(std::ceil(size / 2 / step[k])) + 1;
       if (at <= -0.5 + rounding * size) before = half, beyond[0] = Beyond::end;
       if (at + length >= size - 0.5 - rounding * size) after = half, beyond[1] = Beyond::end;

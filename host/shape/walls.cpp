@@ -41,6 +41,7 @@ core::Domain<D> domain_in(double unit, const scene::Domain& domain) {
     made.size[k] = static_cast<int>(std::lround(domain.size[k] / unit));
     made.periodic[k] = domain.periodic[k];
   }
+  made.open_axis = domain.open_axis;
   made.block = {{}, made.size};
   return made;
 }
@@ -91,8 +92,8 @@ class Builder {
   void take_ends(int axis, double& from, double& to) const {
     constexpr double exact = 1e-9;
     if (passes(axis, from, to)) from = -endless, to = endless;
-    if (axis > 0 || domain_.periodic[0]) return;
-    const double size = domain_.size[0];
+    if (axis != domain_.open_axis) return;
+    const double size = domain_.size[axis];
     if (from <= -0.5 + exact * size) from = -endless;
     if (to >= size - 0.5 - exact * size) to = endless;
   }
@@ -223,6 +224,7 @@ class Builder {
     std::copy_n(domain_.size.begin(), K, some.size.begin());
     std::copy_n(domain_.periodic.begin(), K, some.periodic.begin());
     some.block = {{}, some.size};
+    some.open_axis = domain_.open_axis < K ? domain_.open_axis : -1;
     return some;
   }
 

@@ -23,7 +23,7 @@ std::string why_no_exact_flow(const scene::Scene& scene) {
     return "the scene has cells, and the exact flow is of the fluid alone";
   if (!scene.fluid.layers.empty()) return "the fluid has layers, and the exact flow is of one viscosity";
   if (scene.domain.has_shapes()) return "the exact flow between walls of any shape is not known";
-  if (!scene.domain.periodic[1]) return "";
+  if (scene.domain.walled(1)) return "";
   return scene.domain.is_duct() ? "the scene has no walls across y" : "the scene has no walls";
 }
 std::string why_no_exact_flow(const Quantity& quantity, const scene::Scene& scene, const scene::Stage& stage,

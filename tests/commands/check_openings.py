@@ -4,6 +4,7 @@ the same bytes for any threads, ranks and after a kill, and what is refused.
 
 usage: check_openings.py ROULEAU [--no-whole-runs]
 """
+import copy
 import csv
 import json
 import math
@@ -82,6 +83,41 @@ FED_TUBE = changed(TUBE, domain={"size": ["14 um", "5.5 um", "5.5 um"], "nodes":
                    numerics={"density_factor": 100, "area_correction": True}, cell_types={"ball": CAPSULE},
                    interactions=[{"between": ["ball", other], **REPULSION} for other in ("ball", "wall")],
                    stages__0__duration="16 ms", output__cells__seconds="1 ms")
+
+
+# Between walls of a shape, for a domain has planes across y and z alone; and their likes along another axis.
+SHAPED = changed(ROUND, domain__y="periodic", domain__walls={"within": {"box": {"lower": ["0 um", "1 um"], "upper": ["20 um", "9.5 um"]}}},
+                 stages__0__duration="2 ms", output__cells__seconds="0.5 ms")
+DUCT = changed(SHAPED, domain={"size": ["6 um", "5 um", "4 um"], "nodes": [24, 20, 16], "x": ends(VELOCITY), "y": "periodic", "z": "periodic",
+                               "walls": {"within": {"box": {"lower": ["0 um", "0.5 um", "0.6 um"], "upper": ["6 um", "4.5 um", "3.5 um"]}}},
+                               "obstacles": [{"sphere": {"center": ["3 um", "4.5 um", "1 um"], "radius": "1 um"}}]},
+               stages__0__duration="0.2 ms", output__cells__seconds="0.1 ms")
+FED_ALONG_Y = changed(FED, domain={"size": ["18 um", "40 um"], "nodes": [36, 80],
+                                   "y": ends({**VELOCITY, "cells": {"type": "rbc", "hematocrit": 0.2, "seed": 3}}),
+                                   "walls": {"within": {"box": {"lower": ["1 um", "0 um"], "upper": ["17 um", "40 um"]}}}},
+                      cells=[{"type": "rbc", "at": ["9 um", "20 um"], "angle": "1 rad"}], stages__0__duration="0.1 s")
+FED_ALONG_Z = changed(FED_TUBE, stages__0__duration="9 ms",
+                      domain={"size": ["5.5 um", "5.5 um", "10 um"], "nodes": [22, 22, 40],
+                              "z": ends({**VELOCITY, "cells": {"type": "ball", "hematocrit": 0.15}}),
+                              "walls": {"within": {"cylinder": {"axis": "z", "center": ["2.75 um", "2.75 um"], "radius": "2.5 um"}}}})
+
+
+def turned(scene, axis):
+    """x and another axis exchanged."""
+    def exchange(value):
+        value = [*value]
+        value[0], value["xyz".index(axis)] = value["xyz".index(axis)], value[0]
+        return value
+
+    def shape(written):
+        return {name: {key: exchange(value) if key in ("lower", "upper", "center") else value for key, value in part.items()}
+                for name, part in written.items()}
+
+    domain = copy.deepcopy(scene["domain"])
+    domain.update(size=exchange(domain["size"]), nodes=exchange(domain["nodes"]), obstacles=[shape(one) for one in domain["obstacles"]],
+                  walls={"within": shape(domain["walls"]["within"])})
+    domain["x"], domain[axis] = domain[axis], domain["x"]
+    return changed(scene, domain=domain)
 
 
 class Openings(unittest.TestCase):
@@ -354,6 +390,43 @@ class Openings(unittest.TestCase):
             rows = [[row for row in (self.folder / name / table).read_text().splitlines()] for name in ("at-once", "longer")]
             self.assertEqual(*rows)
 
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_flow_along_another_axis_is_that_along_x_turned(self):
+        for name, scene, axis in (("y", SHAPED, "y"), ("y-pressure", changed(SHAPED, domain__x=ends(PRESSURE)), "y"),
+                                  ("duct-y", DUCT, "y"), ("duct-z", changed(DUCT, domain__x=ends(PRESSURE)), "z")):
+            rows, rows_too = self.run_scene(scene, name), self.run_scene(turned(scene, axis), f"{name}-turned")
+            self.assertEqual(len(rows), len(rows_too))
+            for key, value in rows[-1].items():
+                if key == "stage_name" or math.isnan(value):
+                    continue
+                if axis == "z" and key.endswith(("_J_per_m", "_W_per_m")):  # over the depth, which is the length now
+                    value *= 4 / 6
+                off = 1e-7 if key == "mean_velocity_m_per_s" else 1e-9  # the fluid's area comes from parts of the domain
+                self.assertAlmostEqual(rows_too[-1][key], value, delta=off * abs(value), msg=f"{name} {key}")
+            self.assertFalse(math.isnan(rows_too[-1]["wall_stress_lower_Pa"]))
+
+    def fed_along(self, scene, name, axis, content):
+        rows = self.run_scene(scene, name)
+        came, left = self.traffic(name)
+        self.assertEqual((rows[-1]["cells_in"], rows[-1]["cells_out"]), (len(came), len(left)))
+        self.assertGreater(len(came), 3)
+        self.assertGreater(len(left), 0)
+        with open(self.folder / name / "cells.csv") as table:
+            cells = list(csv.DictReader(table))
+        length = float(scene["domain"]["size"]["xyz".index(axis)].split()[0]) * UM
+        self.assertTrue(all(0 < float(cell[f"{axis}_m"]) < length and float(cell["min_gap_m"]) > 0 for cell in cells))
+        self.assertEqual(sorted(came)[-1], len(came) - (0 if scene["cells"] else 1))
+        inlet = json.loads((self.folder / name / "summary.json").read_text())["cell_traffic"]["stages"][0]["ends"][0]
+        hematocrit = scene["domain"][axis]["lower"]["inlet"]["cells"]["hematocrit"]
+        self.assertAlmostEqual(inlet["volume_in"], hematocrit * inlet["flow_in"], delta=content)
+
+    @unittest.skipIf(WITHOUT_WHOLE_RUNS, "slow")
+    def test_cells_come_and_leave_along_y_and_along_z(self):
+        self.fed_along(FED_ALONG_Y, "along-y", "y", 30e-12)
+        self.fed_along(FED_ALONG_Z, "along-z", "z", 6e-18)
+        self.same_bytes(changed(FED_ALONG_Y, stages__0__duration="40 ms"), "bytes-y")
+        self.same_bytes(changed(FED_ALONG_Z, stages__0__duration="4 ms"), "bytes-z")
+
     def test_plan_tells_inlet_and_outlet(self):
         for scene, open_area, speed in ((CHANNEL, HEIGHT, 1.5e-3), (TUBE, math.pi * RADIUS ** 2, 2e-3),
                                         (ROUND, HEIGHT, 1.5e-3 * 20 / 12)):
@@ -401,6 +474,16 @@ class Openings(unittest.TestCase):
                  "no way from the inlet to the outlet"),
                 (changed(CHANNEL, domain__obstacles=[{"box": {"lower": ["0 um", "0 um"], "upper": ["9 um", "10 um"]}}]),
                  "no way from the inlet to the outlet"),
+                (changed(FED_ALONG_Y, domain__obstacles=[{"box": {"lower": ["0 um", "20 um"], "upper": ["18 um", "29 um"]}}]),
+                 "lower end along y"),
+                (changed(CHANNEL, domain__y=ends(VELOCITY)), "open along x already"),
+                (changed(CHANNEL, domain__x="periodic", domain__y={**ends(VELOCITY), "upper": {"wall": {}}}), "inlet below has an outlet above"),
+                (changed(FED_ALONG_Y, stages__0={"name": "s", "shear_rate": "1 1/s", "duration": "1 ms"}, interactions=[]), "shear_rate"),
+                (changed(FED_ALONG_Y, stages__0__mean_velocity="1 mm/s"), "give domain.y.lower.inlet"),
+                (changed(FED_ALONG_Y, fluid__body_force=["0 N/m3", "1 N/m3"]), "drive the flow along y"),
+                (changed(FED_ALONG_Y, cells=[{"type": "rbc", "at": ["9 um", "2 um"]}]), "too near the inlet"),
+                (changed(DUCT_STEP, domain={"size": ["6 um", "5 um", "6 um"], "nodes": [18, 15, 18], "y": WALLS, "z": ends(VELOCITY)},
+                         stages__0={"name": "s", "shear_rate": "1 1/s", "duration": "1 ms"}), "across what flows"),
                 (changed(fed, cells=[{"type": "rbc", "at": ["2 um", "5 um"]}]), "too near the inlet")):
             with self.subTest(words=words):
                 self.assertIn(words, self.refusal(scene))

@@ -76,7 +76,7 @@ class Decomposition {
 
   [[nodiscard]] int ranks() const { return static_cast<int>(blocks_.size()); }
   /// The lattice with the block of a rank.
-  [[nodiscard]] Domain<D> domain(int rank) const { return {whole_.size, whole_.periodic, blocks_[rank]}; }
+  [[nodiscard]] Domain<D> domain(int rank) const { return whole_.with(blocks_[rank]); }
   /// The rank that computes a node of the lattice.
   [[nodiscard]] int owner(const std::array<int, D>& node) const {
     const std::vector<int>& near = index_[square_of(node)];

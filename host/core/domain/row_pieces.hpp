@@ -33,9 +33,14 @@ class RowPieces {
     for (int i = 0; i < row_count(block_); ++i) {
       std::vector<RowPiece> found;
       runs(i, [&](int begin, int end) { found.push_back({i, begin, end}); });
-      const int x = block_.begin[0];
-      const bool opens = !domain.periodic[0] && !found.empty() &&
-                         (x + found.front().begin == 0 || x + found.back().end == domain.size[0]);
+      bool opens = false;
+      if (const int k = domain.open_axis; k > 0) {
+        const int place = block_.begin[k] + row_of(block_, i)[k - 1];
+        opens = place == 0 || place == domain.size[k] - 1;
+      } else if (k == 0 && !found.empty()) {
+        const int x = block_.begin[0];
+        opens = x + found.front().begin == 0 || x + found.back().end == domain.size[0];
+      }
       const int between = opens ? block_.size(0) : little;
       for (const RowPiece& piece : found) {
         const bool first = pieces_.size() == first_piece_.back();

@@ -21,7 +21,7 @@ namespace rouleau::core {
 /// What a fluid is made of. Lattice units.
 template <int D>
 struct FluidSetting {
-  Domain<D> domain;        ///< along x periodic, or open
+  Domain<D> domain;
   double relaxation_rate;  ///< 1/tau of the suspending fluid
   /// Viscosity at each height y of the lattice over that of `relaxation_rate` (layers.hpp); empty: 1 everywhere.
   std::vector<double> viscosity_of_rows = {};
@@ -34,7 +34,7 @@ struct FluidSetting {
   /// Walls of any shape; null: none. `wall_time`: of a step, in the unit of their velocities; 0: they rest.
   std::shared_ptr<const SolidNodes<D>> solid = {};
   double wall_time = 0;
-  Openings openings = {};  ///< of a domain that is not periodic along x
+  Openings openings = {};  ///< of a domain with an open axis
 };
 
 /// Numbers of each link to a solid node, by its place: of the node in the whole lattice, times the number of
@@ -74,7 +74,7 @@ struct FluidMeasures {
   /// none.
   double mass, speed;
   std::optional<Energetics<D>> energetics;  ///< if it was wanted
-  /// Mean velocity along x of each row (flow_rate.hpp), solid nodes counted as fluid at rest; empty if it was not
+  /// Mean velocity along Domain::flow_axis of each row (flow_rate.hpp), solid nodes counted as fluid at rest; empty if it was not
   /// wanted.
   std::vector<double> row_velocities;
 };
@@ -88,7 +88,7 @@ class AnyFluid {
   /// Called on the first rank with the values of one band of the lattice's nodes after another (gather_bands).
   template <class V>
   using Take = std::function<void(int b, const std::vector<V>& values)>;
-  /// Mean shear stresses on the lower and the upper wall across y, along +x; NaN with solid nodes.
+  /// Mean shear stresses on the lower and the upper wall across y, along Domain::flow_axis; NaN with solid nodes.
   struct WallStress {
     double lower, upper;
   };
@@ -135,7 +135,7 @@ class AnyFluid {
   /// Settled, with the next step's force spread.
   [[nodiscard]] virtual FluidMeasures<D> measure(WantedMeasures wanted) const = 0;
   [[nodiscard]] FluidMeasures<D> mass_and_speed() const { return measure(WantedMeasures{}); }
-  /// Of the lower and the upper end along x; settled, with the next step's force spread.
+  /// Of the lower and the upper end of the open axis; settled, with the next step's force spread.
   [[nodiscard]] virtual std::array<EndFlow, 2> end_flows() const = 0;
   [[nodiscard]] double mass() const { return mass_and_speed().mass; }
   [[nodiscard]] Energetics<D> energetics() const { return *measure({.energetics = true}).energetics; }
@@ -148,7 +148,8 @@ class AnyFluid {
   [[nodiscard]] WallStress mean_wall_stress(const WallForces<D>& forces) const {
     if (setting_.solid) return {std::nan(""), std::nan("")};
     const double nodes = static_cast<double>(setting_.domain.nodes()) / setting_.domain.size[1];
-    return {forces.lower[0] / nodes, forces.upper[0] / nodes};
+    const int axis = setting_.domain.flow_axis();
+    return {forces.lower[axis] / nodes, forces.upper[axis] / nodes};
   }
 
  protected:

@@ -162,8 +162,11 @@ EnergyTask<T, Set> energy_task(const FluidState<T, Set>& state, VelocityRows<Set
     for (int k = 1, rest = place; k < dimension; ++k, rest /= 3) {
       int& coordinate = beside[k - 1];
       coordinate += rest % 3 - 1;
-      wall = wall || (coordinate < 0 && state.setting.domain.wall_below(k)) ||
-             (coordinate >= state.lattice.size(k) && state.setting.domain.wall_above(k));
+      const Domain<dimension>& domain = state.setting.domain;
+      if ((coordinate >= 0 || !domain.wall_below(k)) && (coordinate < state.lattice.size(k) || !domain.wall_above(k)))
+        continue;
+      if (domain.walled(k)) wall = true;
+      coordinate = row[k - 1];  // beyond an opening
     }
     if (wall) continue;
     const std::array<double*, dimension> u = rows.row(beside);
@@ -273,7 +276,7 @@ void EnergySum<T, Set>::add(int i) {
   task.kinetic = &sums_[kinetic];
   task.dissipation = &sums_[dissipation];
   const std::array<double*, dimension> u = rows_.row(row);
-  velocity_along_x_ = u[0];
+  velocity_along_flow_ = u[state_.setting.domain.flow_axis()];
   state_.for_fluid(i, [&](int begin, int end, const auto& in) {
     Task part = task;
     part.count = end - begin;

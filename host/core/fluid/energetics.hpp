@@ -50,7 +50,7 @@ class EnergySum {
   /// Row i; from the first one to the last.
   void add(int i);
   /// Velocities along x in the row that was added last, x = 0..nx-1; 0 in the solid.
-  [[nodiscard]] const double* velocity_along_x() const { return velocity_along_x_; }
+  [[nodiscard]] const double* velocity_along_flow() const { return velocity_along_flow_; }
   /// Of all ranks together.
   [[nodiscard]] Energetics<dimension> total(const Ranks<dimension>& ranks);
 
@@ -71,7 +71,7 @@ class EnergySum {
   std::array<std::vector<double>, dimension> edge_;
   std::vector<ExactSum> sums_;
   std::vector<double> power_;  ///< of a row's nodes
-  const double* velocity_along_x_ = nullptr;
+  const double* velocity_along_flow_ = nullptr;
 };
 
 extern template class EnergySum<float, D2Q9>;

@@ -23,11 +23,12 @@ double flow_rate(const std::vector<double>& row_velocities, const WallVelocity& 
                  bool solid) {
   double sum = 0;
   for (const double velocity : row_velocities) sum += velocity;
-  if (solid) return sum;
+  const double of_sum = static_cast<double>(domain.size[0]) / domain.size[domain.flow_axis()];
+  if (solid) return of_sum * sum;
   const auto rows = static_cast<int>(row_velocities.size());
   double corrected = sum;
   for (int axis = 1, apart = 1; axis < D; apart *= domain.size[axis++]) {
-    if (domain.periodic[axis]) continue;
+    if (!domain.walled(axis)) continue;
     // The velocity by the place along this axis, summed over the other one.
     const int size = domain.size[axis];
     std::vector<double> profile(static_cast<std::size_t>(size));
@@ -35,7 +36,7 @@ double flow_rate(const std::vector<double>& row_velocities, const WallVelocity& 
     const int others = rows / size;
     corrected += end_correction(profile, axis == 1 ? others * walls.lower : 0, axis == 1 ? others * walls.upper : 0);
   }
-  return corrected;
+  return of_sum * corrected;
 }
 
 template double flow_rate(const std::vector<double>&, const WallVelocity&, const Domain<2>&, bool);

@@ -8,6 +8,7 @@
 
 #include "core/domain/exact_sum.hpp"
 #include "energetics.hpp"
+#include "openings/section.hpp"
 #include "walls.hpp"
 
 namespace rouleau::core {
@@ -235,7 +236,7 @@ FluidMeasures<Set::dimension> measure(const FluidState<T, Set>& state, const Ran
   for (int i = 0; i < state.lattice.rows(); ++i) {
     fluid.add(state, i);
     if (energy) energy->add(i);
-    if (rows) (*rows)[state.lattice.row(i)].add(energy->velocity_along_x(), static_cast<std::size_t>(state.nx()));
+    if (rows) (*rows)[state.lattice.row(i)].add(energy->velocity_along_flow(), static_cast<std::size_t>(state.nx()));
   }
   fluid.add_up(ranks);
   FluidMeasures<Set::dimension> found{
@@ -272,18 +273,26 @@ std::vector<double> row_velocities_without_membranes(const FluidState<T, Set>& s
 template <class T, class Set>
 std::array<EndFlow, 2> end_flows(const FluidState<T, Set>& state, const Ranks<Set::dimension>& ranks) {
   const Domain<Set::dimension>& domain = state.setting.domain;
+  const SectionNodes<Set::dimension> nodes(domain);
+  const int axis = nodes.axis();
   std::array<EndFlow, 2> flows;
   for (const int end : {0, 1}) {
     const std::vector<int>& parts = state.parts_of_ends[end];
     const auto count = static_cast<std::size_t>(1 + *std::max_element(parts.begin(), parts.end()));
     std::vector<ExactSum> sums(3 + count);  // velocities, densities, nodes; velocities in each part
-    const int x = end == 0 ? 0 : state.nx() - 1;
-    const bool mine = end == 0 ? domain.wall_below(0) : domain.wall_above(0);
+    const int place = end == 0 ? 0 : domain.block.size(axis) - 1;
+    const bool mine = end == 0 ? domain.wall_below(axis) : domain.wall_above(axis);
     for (int i = 0; mine && i < state.lattice.rows(); ++i) {
-      for_moments(state, i, x, x + 1, [&](int, const Moments<Set::dimension>& node) {
-        const double values[] = {node.velocity[0], node.density, 1};
+      const auto row = state.lattice.row(i);
+      if (axis > 0 && row[std::max(axis - 1, 0)] != place) continue;
+      std::array<int, Set::dimension> at = domain.block.begin;
+      for (int k = 1; k < Set::dimension; ++k) at[k] += row[k - 1];
+      const int first = axis == 0 ? place : 0, last = axis == 0 ? place + 1 : state.nx();
+      for_moments(state, i, first, last, [&](int x, const Moments<Set::dimension>& node) {
+        const double values[] = {node.velocity[axis], node.density, 1};
         for (std::size_t k = 0; k < std::size(values); ++k) sums[k].add(values[k]);
-        sums[3 + static_cast<std::size_t>(parts[row_in_lattice(domain, state.lattice.row(i))])].add(node.velocity[0]);
+        at[0] = domain.block.begin[0] + x;
+        sums[3 + static_cast<std::size_t>(parts[nodes.number(at)])].add(node.velocity[axis]);
       });
     }
     add_up(ranks, sums);
@@ -298,24 +307,26 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
                                        const WallVelocity& walls) {
   using Sums = WallForceSums<Set::dimension>;
   Sums sums;
+  const Domain<Set::dimension>& domain = state.setting.domain;
+  const int open = domain.flow_axis();
   // A population that leaves towards the wall and returns gives the wall c_q f_q - c_-q f_-q = c_q (f_q + f_-q); the
   // one that left is the one that came back plus the wall's own momentum: f_q = f_-q + 6 w_q c_q . u_wall.
   for (int i = 0; i < state.lattice.rows(); ++i) {
     const auto row = state.lattice.row(i);
     const auto beyond = [&](int axis, int c) {
       const int place = row[axis - 1] + c;
-      return (place < 0 && state.setting.domain.wall_below(axis)) ||
-             (place >= state.lattice.size(axis) && state.setting.domain.wall_above(axis));
+      return domain.walled(axis) &&
+             ((place < 0 && domain.wall_below(axis)) || (place >= state.lattice.size(axis) && domain.wall_above(axis)));
     };
     const auto wall_of = [&](const auto& c) {
       return !beyond(1, c[1]) ? Sums::other : c[1] < 0 ? Sums::lower : Sums::upper;
     };
-    // Along x, what pressure gives to a wall by a link in direction q that crosses an opening, too: that is the
+    // Along the open axis, what pressure gives to a wall by a link in direction q that crosses an opening, too: that is the
     // opening's. Elsewhere such links come in pairs, and their pressures cancel.
     const auto of_opening = [&](const auto& in, int q, int x) {
-      const int place = x + Set::velocity[q][0];
-      const Domain<Set::dimension>& domain = state.setting.domain;
-      if (!(place < 0 && domain.wall_below(0)) && !(place >= state.nx() && domain.wall_above(0))) return 0.0;
+      const int place = (open == 0 ? x : row[std::max(open - 1, 0)]) + Set::velocity[q][open];
+      if (!(place < 0 && domain.wall_below(open)) && !(place >= state.lattice.size(open) && domain.wall_above(open)))
+        return 0.0;
       double density = 0;
       for (const T* const population : in) density += static_cast<double>(population[x]);
       return 2 * Set::weight[q] * density;
@@ -327,7 +338,7 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
       const double speed = wall == Sums::other ? 0 : wall == Sums::lower ? walls.lower : walls.upper;
       const double force = 2 * static_cast<double>(in[Set::opposite[q]][x]) + 6 * Set::weight[q] * c[0] * speed;
       for (int k = 0; k < Set::dimension; ++k)
-        if (c[k] != 0) sums.add(wall, k, sign * c[k] * (k == 0 ? force - of_opening(in, q, x) : force));
+        if (c[k] != 0) sums.add(wall, k, sign * c[k] * (k == open ? force - of_opening(in, q, x) : force));
     };
     for (int q = 1; q < Set::velocity_count; ++q) {
       const auto& c = Set::velocity[q];
@@ -344,7 +355,7 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
         const double both = static_cast<double>(link.left) + static_cast<double>(at.in[q][x]);
         for (int k = 0; k < Set::dimension; ++k) {
           if (Set::velocity[q][k] != 0)
-            sums.add(Sums::other, k, -Set::velocity[q][k] * (both - (k == 0 ? of_opening(at.in, link.w, x) : 0)));
+            sums.add(Sums::other, k, -Set::velocity[q][k] * (both - (k == open ? of_opening(at.in, link.w, x) : 0)));
         }
       }
     });

@@ -40,8 +40,8 @@ FluidState<T, Set>::FluidState(const FluidSetting<dimension>& of_fluid)
     parts_of_ends = core::parts_of_ends(setting.domain, setting.solid.get());
     openings = std::make_unique<OpenLinks<T, Set>>(
         lattice, *setting.openings, setting.solid.get(), setting.walls,
-        typename OpenLinks<T, Set>::FlowThere{viscosity_of(1 / setting.relaxation_rate), setting.body_force[0],
-                                              setting.inertia});
+        typename OpenLinks<T, Set>::FlowThere{viscosity_of(1 / setting.relaxation_rate),
+                                              setting.body_force[setting.domain.flow_axis()], setting.inertia});
   }
 }
 

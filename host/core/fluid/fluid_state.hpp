@@ -37,7 +37,7 @@ struct FluidState {
   NodeMask mask;
   Lattice<T, Set> lattice;
   std::unique_ptr<SolidLinks<T, Set>> links;           ///< null without solid nodes
-  std::unique_ptr<OpenLinks<T, Set>> openings;         ///< null where x is periodic
+  std::unique_ptr<OpenLinks<T, Set>> openings;         ///< null where no axis is open
   std::array<std::vector<int>, 2> parts_of_ends = {};  ///< parts_of_ends(); empty without openings
   /// Force density, and after a step the velocity, in active nodes.
   VectorField<T, dimension> force;

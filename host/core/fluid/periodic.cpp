@@ -178,7 +178,7 @@ void fill_velocity_halo(VectorField<T, D>& velocity, const std::array<int, D - 1
 template <class T, int D>
 void mirror_velocity(VectorField<T, D>& velocity, const Domain<D>& domain, const WallVelocity& walls) {
   for (int axis = 1; axis < D; ++axis) {
-    if (domain.periodic[axis]) continue;
+    if (!domain.walled(axis)) continue;
     const int begin = domain.block.begin[axis], lattice = domain.size[axis], size = domain.block.size(axis);
     const auto mirror = [&](std::array<int, D - 1> row, int from, int to, int component, double speed) {
       row[axis - 1] = from;

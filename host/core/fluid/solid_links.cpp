@@ -16,11 +16,11 @@ void for_cut_links(const Domain<Set::dimension>& domain, const SolidNodes<Set::d
   using Node = std::array<int, dimension>;
   const auto out_of_domain = [&](const Node& node) {
     bool out = false;
-    for (int k = 1; k < dimension; ++k) out = out || domain.wrapped(k, node[k]) < 0;
+    for (int k = 0; k < dimension; ++k) out = out || (k != domain.open_axis && domain.wrapped(k, node[k]) < 0);
     return out;
   };
   const auto cut = [&](const Node& node, Node toward) {  // beyond an opening the section goes on
-    if (domain.wrapped(0, node[0] + toward[0]) < 0) toward[0] = 0;
+    if (const int k = domain.open_axis; k >= 0 && domain.wrapped(k, node[k] + toward[k]) < 0) toward[k] = 0;
     return solid.cut(node, toward);
   };
   for (Node node = first; node[0] < end; ++node[0]) {

@@ -56,7 +56,7 @@ class SolidNodes {
   /// The same of periodic images, too; what lies beyond the walls of the domain is none. Beyond an opening the section
   /// of the outermost nodes goes on.
   [[nodiscard]] bool at(const Domain<D>& domain, Node node) const {
-    if (!domain.periodic[0]) node[0] = std::clamp(node[0], 0, domain.size[0] - 1);
+    if (const int k = domain.open_axis; k >= 0) node[k] = std::clamp(node[k], 0, domain.size[k] - 1);
     for (int k = 0; k < D; ++k) {
       node[k] = domain.wrapped(k, node[k]);
       if (node[k] < 0) return false;

@@ -40,10 +40,14 @@ bool is_enclosed(const BasicSolverSetup<D>& setup) {
 /// What cannot be between openings, yet or at all.
 template <int D>
 void require_openings(const BasicSolverSetup<D>& setup) {
-  if (setup.openings.has_value() == setup.domain.periodic[0])
-    throw std::invalid_argument("a lattice is periodic along x, or has openings at its ends");
+  const int axis = setup.domain.open_axis;
+  if (setup.openings.has_value() != (axis >= 0 && !setup.domain.periodic[axis]) ||
+      !(setup.domain.periodic[0] || axis == 0))
+    throw std::invalid_argument("a lattice has openings where its open axis is, and is periodic along x else");
   if (!setup.openings) return;
-  if (setup.domain.size[0] < 2) throw std::invalid_argument("between two openings there are at least two nodes");
+  if (axis > 0 && (setup.walls.lower != 0 || setup.walls.upper != 0))
+    throw std::invalid_argument("walls that move along x go with openings along x alone");
+  if (setup.domain.size[axis] < 2) throw std::invalid_argument("between two openings there are at least two nodes");
   if (setup.follow_cells) throw std::invalid_argument("between openings the frame does not follow the cells");
   if (setup.developed || setup.mean_velocity != 0)
     throw std::invalid_argument("between openings no developed flow is known to begin with, and no mean velocity kept");
@@ -317,7 +321,7 @@ WallForces<D> AnySolver<D>::wall_forces() const {
 template <int D>
 typename AnyFluid<D>::WallStress AnySolver<D>::mean_wall_stress(const WallForces<D>& forces) const {
   if (!setup_.solid) return fluid().mean_wall_stress(forces);
-  const double mean = setup_.wall_area > 0 ? forces.all(0) / setup_.wall_area : NAN;
+  const double mean = setup_.wall_area > 0 ? forces.all(setup_.domain.flow_axis()) / setup_.wall_area : NAN;
   return {mean, mean};
 }
 

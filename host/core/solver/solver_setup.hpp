@@ -31,7 +31,7 @@ struct CellType {
 /// are 1.
 template <int D>
 struct BasicSolverSetup {
-  /// Along x periodic, or between openings; along y and z periodic, or between walls.
+  /// Along x periodic; along y and z periodic, or between walls; or along one axis between openings.
   Domain<D> domain = {};
   /// Of an x that is not periodic. Cells come and go between steps (AnySolver::renew_cells): their nodes stay so far
   /// from openings that no stencil of the kernel reaches beyond.

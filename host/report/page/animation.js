@@ -307,16 +307,16 @@ class Animation {
     }
   }
 
-  /// Walls as thick lines, with arrows that go with them where they move; periodic borders as dashes.
+  /// Walls as thick lines, with arrows that go with them where they move; periodic borders and openings as dashes.
   paintFrame(context, scale, clip) {
-    const {lx, ly, walls} = this;
+    const {lx, ly, walls} = this, closed = walls && !sceneOf(this.data)?.domain?.y?.lower?.inlet;
     const edge = (solid, x0, y0, x1, y1) => {
       context.beginPath(); context.setLineDash(solid ? [] : [5, 4]); context.lineWidth = solid ? 3 : 1;
       context.strokeStyle = css(solid ? "--text" : "--quiet");
       context.moveTo(x0 * scale, y0 * scale); context.lineTo(x1 * scale, y1 * scale); context.stroke(); context.setLineDash([]);
     };
     for (let k = Math.ceil(clip.left / lx - 1e-9); k * lx <= clip.right + 1e-9 * lx; ++k) edge(false, k * lx, clip.bottom, k * lx, clip.top);
-    for (let k = Math.ceil(clip.bottom / ly - 1e-9); k * ly <= clip.top + 1e-9 * ly; ++k) edge(walls, clip.left, k * ly, clip.right, k * ly);
+    for (let k = Math.ceil(clip.bottom / ly - 1e-9); k * ly <= clip.top + 1e-9 * ly; ++k) edge(closed, clip.left, k * ly, clip.right, k * ly);
     if (walls) this.paintWalls(context, scale, clip);
   }
   paintWalls(context, scale, clip) {

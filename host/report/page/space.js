@@ -100,11 +100,12 @@ class SpaceView {
     this.repeat(new Geometry(gl, {position: {size: 3, data: position}, normal: {size: 3, data: normal}, index: {data: index}}), program);
   }
   /// Whether the sides of the box across an axis are walls: those that are not periodic, where it is not walls of another shape that
-  /// close the box. Across x such sides are openings.
+  /// close the box, or openings.
   isWalled(axis) {
     if (axis === 0 || this.periodic[axis]) return false;
     const domain = sceneOf(this.data)?.domain;
-    return domain ? typeof domain["xyz"[axis]] === "object" : !this.data.walls;
+    const ends = domain?.["xyz"[axis]];
+    return domain ? typeof ends === "object" && !ends.lower?.inlet : !this.data.walls;
   }
   addPlanes() {
     const half = this.box.map(l => l / 2), position = [], normal = [], index = [];

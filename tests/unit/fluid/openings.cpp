@@ -1,4 +1,4 @@
-// Flow between openings at the ends of x, by velocity and by pressure.
+// Flow between openings at the ends of an axis, by velocity and by pressure.
 #include "core/fluid/openings/opening.hpp"
 
 #include <catch2/catch.hpp>
@@ -124,6 +124,108 @@ void compare_with_blocks(const FluidSetting<Set::dimension>& setting, const Deco
   CHECK(std::isfinite(flows[0].flow));
 }
 
+/// x and another axis exchanged.
+template <class V>
+V turned(V along, int axis) {
+  std::swap(along[0], along[static_cast<std::size_t>(axis)]);
+  return along;
+}
+
+/// Open along an axis, with walls of solid nodes: the same for any axis, but for the exchange with x.
+template <int D>
+FluidSetting<D> turned_setting(int axis, const Opening& lower) {
+  using Node = std::array<int, D>;
+  Node size;
+  std::array<bool, D> periodic;
+  size.fill(9), periodic.fill(true);
+  size[0] = 14, size[1] = 11, periodic[0] = false;
+  Domain<D> domain(turned(size, axis), turned(periodic, axis));
+  domain.open_axis = axis;
+  FluidSetting<D> setting = open_setting(domain, 0.9, lower, pressure(0));
+  setting.inertia = true;
+  setting.body_force[axis] = 1e-5;
+  const auto is_solid = [axis](const Node& there) {
+    const Node at = turned(there, axis);
+    const bool walls = at[1] < 2 || at[D - 1] == 0, block = at[0] > 4 && at[0] < 8 && at[1] > 7;
+    return walls || block || (at[0] > 9 && at[1] == 5);
+  };
+  const auto cut = [](const Node&, const Node& to) {
+    int links = 0;
+    for (const int along : to) links += std::abs(along);
+    return links == 1 ? 0.3 : 0.45;
+  };
+  setting.solid = std::make_shared<const SolidNodes<D>>(domain.size, is_solid, cut);
+  return setting;
+}
+
+template <class Set>
+std::unique_ptr<Fluid<double, Set>> turned_fluid(int axis, const Opening& lower) {
+  constexpr int D = Set::dimension;
+  const FluidSetting<D> setting = turned_setting<D>(axis, lower);
+  auto fluid = std::make_unique<Fluid<double, Set>>(setting, trt(0.9, true, D));
+  const auto noise = [axis](const std::array<int, D>& there) {
+    const std::array<int, D> at = turned(there, axis);
+    int mixed = 0;
+    for (int k = 0; k < D; ++k) mixed = 31 * mixed + 17 * at[k];
+    NodeState<D> state{};
+    state.density = 1e-4 * (mixed % 101 - 50);
+    for (int k = 0; k < D; ++k) state.velocity[k] = 1e-4 * ((k + 3) * mixed % 103 - 51);
+    std::swap(state.velocity[0], state.velocity[axis]);
+    return state;
+  };
+  if constexpr (D == 2) {
+    fluid->set_state([&](int x, int y) { return noise({x, y}); });
+  } else {
+    fluid->set_state([&](int x, int y, int z) { return noise({x, y, z}); });
+  }
+  advance(*fluid, 23);
+  fluid->settle();
+  return fluid;
+}
+
+/// Populations, flows, what walls get and what is dissipated, against the same along x.
+template <class Set>
+void compare_turned(int axis, const Opening& lower) {
+  constexpr int D = Set::dimension;
+  const auto along_x = turned_fluid<Set>(0, lower), along_axis = turned_fluid<Set>(axis, lower);
+  const Domain<D>& domain = along_x->setting().domain;
+  double off = 0, largest = 0;
+  for (int i = 0; i < row_count(domain.block); ++i) {
+    const auto row = row_of(domain.block, i);
+    for (int x = 0; x < domain.size[0]; ++x) {
+      std::array<int, D> node{x};
+      std::copy(row.begin(), row.end(), node.begin() + 1);
+      if (along_x->setting().solid->at(node)) continue;
+      const std::array<int, D> there = turned(node, axis);
+      auto row_there = row;
+      std::copy(there.begin() + 1, there.end(), row_there.begin());
+      for (int q = 0; q < Set::velocity_count; ++q) {
+        int to = 0;
+        for (bool same = false; !same; to += same ? 0 : 1) {
+          same = true;
+          for (int k = 0; k < D; ++k)
+            same = same && Set::velocity[to][k == 0 ? axis : k == axis ? 0 : k] == Set::velocity[q][k];
+        }
+        const double value = along_x->population(q, x, row);
+        largest = std::max(largest, std::abs(value));
+        off = std::max(off, std::abs(value - along_axis->population(to, there[0], row_there)));
+      }
+    }
+  }
+  CHECK(largest > 1e-5);
+  CHECK(off < 1e-13);
+  const auto flows = along_x->end_flows(), flows_too = along_axis->end_flows();
+  for (const int end : {0, 1}) {
+    CHECK(flows_too[end].flow == Approx(flows[end].flow).epsilon(1e-11));
+    CHECK(flows_too[end].pressure == Approx(flows[end].pressure).margin(1e-14));
+    CHECK(flows_too[end].of_parts.size() == flows[end].of_parts.size());
+  }
+  const auto forces = along_x->wall_forces(), forces_too = along_axis->wall_forces();
+  for (int k = 0; k < D; ++k)
+    CHECK(forces_too.all(k == 0 ? axis : k == axis ? 0 : k) == Approx(forces.all(k)).margin(1e-13));
+  CHECK(along_axis->energetics().dissipation == Approx(along_x->energetics().dissipation).epsilon(1e-10));
+}
+
 }  // namespace
 
 TEST_CASE("the developed flow of a section: exact between planes, uniform without walls") {
@@ -176,6 +278,24 @@ TEMPLATE_TEST_CASE("between openings blocks give the same bits as one lattice", 
   FluidSetting<3> tube = open_setting(domain, 1.2, lower, pressure(0));
   tube.solid = std::make_shared<const SolidNodes<3>>(domain.size, tube_region(domain.size, 4.6));
   compare_with_blocks<TestType, D3Q19>(tube, Decomposition<3>::even(domain, {2, 2, 2}), 12);
+}
+
+TEST_CASE("flow between openings along any axis is that along x, turned") {
+  const Opening lower = GENERATE(0, 1) == 0 ? velocity(0.01) : pressure(0.001);
+  compare_turned<D2Q9>(1, lower);
+  compare_turned<D3Q19>(1, lower);
+  compare_turned<D3Q19>(2, lower);
+}
+
+TEST_CASE("between openings across rows blocks give the same bits as one lattice") {
+  const Opening lower = GENERATE(0, 1) == 0 ? velocity(0.01) : pressure(0.001);
+  const FluidSetting<2> flat = turned_setting<2>(1, lower);
+  for (const std::array<int, 2> cut : {std::array{2, 1}, std::array{1, 2}, std::array{3, 3}})
+    compare_with_blocks<double, D2Q9>(flat, Decomposition<2>::even(flat.domain, cut), 17);
+  for (const int axis : {1, 2}) {
+    const FluidSetting<3> deep = turned_setting<3>(axis, lower);
+    compare_with_blocks<float, D3Q19>(deep, Decomposition<3>::even(deep.domain, {2, 2, 2}), 12);
+  }
 }
 
 TEST_CASE("a fluid between openings goes on from its populations to the same bits") {

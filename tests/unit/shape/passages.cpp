@@ -48,7 +48,7 @@ TEST_CASE("the width of a channel at an angle is that from wall to wall") {
   const auto tilted = passages(plane + R"("y": "periodic", "walls": {"within": {"outline": {"points":
       [["0 um", "-3 um"], ["40 um", "17 um"], ["40 um", "23 um"], ["0 um", "3 um"]]}}})");
   CHECK(tilted.narrowest == Approx(24 * std::cos(std::atan(0.5))).epsilon(0.01));
-  CHECK(tilted.through_x);
+  CHECK(tilted.through);
   CHECK(tilted.apart == 0);
 }
 
@@ -60,8 +60,8 @@ TEST_CASE("between openings a way leads from end to end, and need not come again
       {"box": {"lower": ["14 um", "2 um"], "upper": ["20 um", "18 um"]}},
       {"box": {"lower": ["14 um", "13 um"], "upper": ["40 um", "18 um"]}}]}})";
   const auto stairs = passages(plane + open + ways);
-  CHECK(stairs.through_x);
-  CHECK(!passages(plane + ways).through_x);
+  CHECK(stairs.through);
+  CHECK(!passages(plane + ways).through);
   CHECK(stairs.open[0] == Approx(6 * um));
   CHECK(stairs.open[1] == Approx(5 * um));
   CHECK(stairs.least_open == Approx(5 * um));
@@ -106,24 +106,24 @@ TEST_CASE("pools that no way leads to are counted, and whether a way leads throu
   const auto pools = passages(
       plane + R"("walls": {"within": {"union": [{"box": {"lower": ["0 um", "0 um"], "upper": ["40 um", "10 um"]}},
       {"box": {"lower": ["4 um", "12 um"], "upper": ["9 um", "17 um"]}}]}})");
-  CHECK(pools.through_x);
+  CHECK(pools.through);
   CHECK(pools.apart == 400);
   CHECK(pools.apart_at.y() == Approx(12.125 * um));
   const auto blocked =
       passages(plane + closed + R"("obstacles": [{"box": {"lower": ["4 um", "0 um"], "upper": ["9 um", "20 um"]}}])");
-  CHECK_FALSE(blocked.through_x);
+  CHECK_FALSE(blocked.through);
   CHECK(blocked.apart == 0);
   // Two walls with gaps at different heights, and a stair that comes back to itself without going on.
   const auto winding =
       passages(plane + closed + R"("obstacles": [{"box": {"lower": ["4 um", "0 um"], "upper": ["9 um", "14 um"]}},
       {"box": {"lower": ["24 um", "6 um"], "upper": ["29 um", "20 um"]}}])");
-  CHECK(winding.through_x);
+  CHECK(winding.through);
   const auto loop = passages(
       plane + R"("walls": {"within": {"difference": [{"box": {"lower": ["5 um", "3 um"], "upper": ["35 um", "17 um"]}},
       {"box": {"lower": ["12 um", "8 um"], "upper": ["28 um", "12 um"]}}]}})");
-  CHECK_FALSE(loop.through_x);
+  CHECK_FALSE(loop.through);
   CHECK(loop.apart == 0);
   const auto across = passages(
       plane + R"("y": "periodic", "obstacles": [{"box": {"lower": ["4 um", "0 um"], "upper": ["9 um", "20 um"]}}])");
-  CHECK_FALSE(across.through_x);  // it goes on along y alone
+  CHECK_FALSE(across.through);  // it goes on along y alone
 }

@@ -1,4 +1,4 @@
-// What comes in through openings: the links of a block that cross the planes of its lattice's ends along x.
+// What comes in through openings: the links of a block that cross the planes of its lattice's open ends.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +34,7 @@ class OpenLinks {
   using In = typename Lattice<T, Set>::In;
   using Out = typename Lattice<T, Set>::Out;
   struct FlowThere {
-    double viscosity, body_force_x;
+    double viscosity, body_force;  ///< along the axis
     bool inertia;
   };
   OpenLinks(Lattice<T, Set>& lattice, const std::array<Opening, 2>& openings, const SolidNodes<dimension>* solid,
@@ -76,6 +76,10 @@ class OpenLinks {
     for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) function(links_[k]);
   }
 
+  template <class End>
+  void add(Lattice<T, Set>& lattice, const End& end, const std::array<int, dimension>& node, bool inertia);
+
+  int axis_;
   T half_force_;
   std::vector<Link> links_;
   std::vector<std::size_t> first_;  ///< of each row, and the end

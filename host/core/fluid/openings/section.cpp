@@ -15,15 +15,14 @@ namespace {
 template <int D>
 class SectionEquations {
  public:
-  SectionEquations(const Domain<D>& domain, const SolidNodes<D>* solid, const WallVelocity& walls, int x)
-      : domain_({domain.size, domain.periodic, {{}, domain.size}}), solid_(solid), walls_(walls), column_(x) {
-    const int rows = row_count(domain_.block);
-    for (int i = 0; i < rows; ++i) {
+  SectionEquations(const Domain<D>& domain, const SolidNodes<D>* solid, const WallVelocity& walls, int place)
+      : domain_(domain), nodes_(domain), solid_(solid), walls_(walls), place_(place) {
+    for (int i = 0; i < nodes_.count(); ++i) {
       number_.push_back(is_solid(node_of(i)) ? -1 : count_);
       count_ += number_.back() >= 0 ? 1 : 0;
     }
     of_walls_ = Eigen::VectorXd::Zero(count_);
-    for (int i = 0; i < rows; ++i) {
+    for (int i = 0; i < nodes_.count(); ++i) {
       if (number_[static_cast<std::size_t>(i)] >= 0) add(i);
     }
     if (!walled_) return;
@@ -47,12 +46,7 @@ class SectionEquations {
 
  private:
   using Node = std::array<int, D>;
-  [[nodiscard]] Node node_of(int i) const {
-    Node node{column_};
-    const auto row = row_of(domain_.block, i);
-    for (int k = 1; k < D; ++k) node[k] = row[k - 1];
-    return node;
-  }
+  [[nodiscard]] Node node_of(int i) const { return nodes_.node(i, place_); }
   [[nodiscard]] bool is_solid(const Node& node) const { return solid_ != nullptr && solid_->at(node); }
 
   /// What lies beside a node: another one, or a wall at a share of the link.
@@ -70,15 +64,13 @@ class SectionEquations {
     if (place < 0) return {.share = half_way, .speed = axis != 1 ? 0 : way < 0 ? walls_.lower : walls_.upper};
     node[axis] = place;
     if (is_solid(node)) return {.share = cut};
-    std::size_t row = 0;
-    for (int k = D - 1; k > 0; --k)
-      row = row * static_cast<std::size_t>(domain_.size[k]) + static_cast<std::size_t>(node[k]);
-    return {.node = number_[row]};
+    return {.node = number_[nodes_.number(node)]};
   }
   void add(int i) {
     const int number = number_[static_cast<std::size_t>(i)];
     double own = 0;
-    for (int axis = 1; axis < D; ++axis) {
+    for (int axis = 0; axis < D; ++axis) {
+      if (axis == nodes_.axis()) continue;
       const Beside ends[] = {beside(node_of(i), axis, -1), beside(node_of(i), axis, 1)};
       const double span = (ends[0].share + ends[1].share) / 2;
       for (const Beside& end : ends) {
@@ -96,10 +88,11 @@ class SectionEquations {
   }
 
   Domain<D> domain_;
+  SectionNodes<D> nodes_;
   const SolidNodes<D>* solid_;
   WallVelocity walls_;
-  int column_;
-  std::vector<int> number_;  ///< of each row's node among the fluid's; -1 in the solid
+  int place_;
+  std::vector<int> number_;  ///< of each node among the fluid's; -1 in the solid
   int count_ = 0;
   bool walled_ = false;
   std::vector<Eigen::Triplet<double>> entries_;
@@ -110,8 +103,8 @@ class SectionEquations {
 }  // namespace
 
 template <int D>
-Section section_at(const Domain<D>& domain, const SolidNodes<D>* solid, const WallVelocity& walls, int x) {
-  return SectionEquations<D>(domain, solid, walls, x).solve();
+Section section_at(const Domain<D>& domain, const SolidNodes<D>* solid, const WallVelocity& walls, int place) {
+  return SectionEquations<D>(domain, solid, walls, place).solve();
 }
 
 template Section section_at(const Domain<2>&, const SolidNodes<2>*, const WallVelocity&, int);
@@ -121,29 +114,25 @@ template <int D>
 std::vector<int> parts_of_section(const Domain<D>& domain, int end,
                                   const std::function<bool(const std::array<int, D>&)>& is_fluid) {
   constexpr int solid = -1, unknown = -2;
-  const Box<D> section{{}, domain.size};
+  const SectionNodes<D> section(domain);
+  const int place = end == 0 ? 0 : domain.size[section.axis()] - 1;
   std::vector<int> part;
-  for (int i = 0; i < row_count(section); ++i) {
-    std::array<int, D> node{end == 0 ? 0 : domain.size[0] - 1};
-    const auto row = row_of(section, i);
-    std::copy(row.begin(), row.end(), node.begin() + 1);
-    part.push_back(is_fluid(node) ? unknown : solid);
-  }
+  for (int i = 0; i < section.count(); ++i) part.push_back(is_fluid(section.node(i, place)) ? unknown : solid);
   int count = 0;
-  for (int first = 0; first < row_count(section); ++first) {
+  for (int first = 0; first < section.count(); ++first) {
     if (part[first] != unknown) continue;
     std::vector<int> reached{first};
     part[first] = count;
     while (!reached.empty()) {
-      const auto row = row_of(section, reached.back());
+      const auto node = section.node(reached.back(), place);
       reached.pop_back();
-      for (int way = 0; way < 2 * (D - 1); ++way) {
-        auto beside = row;
+      for (int way = 0; way < 2 * D; ++way) {
+        auto beside = node;
         const int k = way / 2;
-        beside[k] = domain.wrapped(k + 1, row[k] + (way % 2 == 0 ? 1 : -1));
+        if (k == section.axis()) continue;
+        beside[k] = domain.wrapped(k, node[k] + (way % 2 == 0 ? 1 : -1));
         if (beside[k] < 0) continue;
-        int there = 0;
-        for (int l = D - 2; l >= 0; --l) there = there * domain.size[l + 1] + beside[l];
+        const auto there = static_cast<int>(section.number(beside));
         if (part[there] != unknown) continue;
         part[there] = count;
         reached.push_back(there);
