@@ -611,8 +611,11 @@ class The_page_of_a_run_in_three_dimensions(PageCase):
                 area = abs(sum(a * d - b * c for a, b, c, d in zip(x, y, x[1:] + x[:1], y[1:] + y[:1]))) / 2
                 circle = [3.141592653589793 * (r ** 2 - (height * radius) ** 2) for r in (radius - edge ** 2 / (6 * radius), radius * 1.0001)]
                 self.assertTrue(circle[0] <= area <= circle[1], (height, area, circle))
+        page.run(Every_page_on_every_screen.DRAWN)
+        framed = page.run(self.PIXELS)
         page.run("(() => { const s = document.querySelector('input[aria-label=\"Place of the section\"]'); s.value = 0; s.dispatchEvent(new Event('input')); })()")
         self.assertEqual(page.run("timeline.animation.shapes()[0].length"), 0)
+        self.assertNotEqual(page.run(self.PIXELS), framed, "the frame in the box does not follow the section")
         self.assert_sound(page)
 
     def test_makes_a_figure_with_a_bar_and_a_caption(self):

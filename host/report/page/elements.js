@@ -29,7 +29,7 @@ const wordsWithUnit = (name, ending, unit) => plainWords(name.slice(0, name.leng
 /// A name in words, with its unit.
 const spelled = name => { const [ending, unit] = endingOf(name) ?? ["", ""]; return wordsWithUnit(name, ending, unit); };
 /// The same for what is drawn: {title, factor}.
-const drawnAs = name => { const [ending, , unit, factor] = endingOf(name) ?? ["", "", "", 1]; return {title: wordsWithUnit(name, ending, unit), factor}; };
+const drawnAs = name => { const [ending, , unit, factor] = endingOf(name) ?? ["", "", "", 1]; return {title: wordsWithUnit(name.replace("flow_rate_m2", "flow_rate_per_depth_m2"), ending, unit), factor}; };
 /// Lists of what has the same key.
 function grouped(list, key) {
   const groups = new Map();

@@ -80,21 +80,21 @@ function drawnRun(card, timeline, r, view) {
     return {space: null, animation: new Animation(card, timeline, r, view), parts: hasProfile ? [element("div", {class: "pair"}, flowCard())] : []};
   }
   const surfaces = new Surfaces(run.surfaces ?? noSurfaces), section = new Section(run, surfaces), box = element("div", {class: "card"}), parts = [];
-  const space = new SpaceView(card, timeline, r, view, surfaces), name = run.walls || run.fields ? "Section and flow" : "Section";
+  const space = new SpaceView(card, timeline, r, view, surfaces), name = run.fields ? "Section and flow" : "Section";
   box.append(element("div", {class: "chart-head"}, element("h3", {}, name)));
   // Of plasma in a box shorter than it is high a section shows nothing that its profile does not.
   const animation = run.fields?.across && !surfaces.count && space.times > 1 ? null : new Animation(box, timeline, r, view, section);
-  if (animation) { box.append(sectionControls(section, animation)); parts.push(box); }
+  if (animation) { space.section = section; box.append(sectionControls(section, [animation, space])); parts.push(box); animation.canvas.classList.add("framed"); }
   if (run.fields?.across) parts.push(flowCard());
   return {space: space.renderer ? space : null, animation, parts: [element("div", {class: parts.length > 1 ? "pair" : ""}, ...parts)]};
 }
-/// Where the section lies.
-function sectionControls(section, animation) {
+/// Where the section lies, which `views` show.
+function sectionControls(section, views) {
   const words = () => `z = ${format(section.z, 3)} µm`, where = element("span", {class: "quiet"}, words());
   const slider = element("input", {type: "range", min: 0, max: 1, step: .005, value: .5, "aria-label": "Place of the section", "aria-valuetext": words(), oninput: () => {
     section.z = Number(slider.value) * section.length;
     where.textContent = words(); slider.setAttribute("aria-valuetext", words());
-    animation.draw();
+    for (const view of views) view.draw();
   }});
   return element("div", {class: "controls"}, element("label", {}, "Plane across z"), slider, where);
 }

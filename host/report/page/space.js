@@ -68,13 +68,13 @@ class SpaceView {
     if (this.surfaces.count) this.repeat(this.geometry, this.program);
     const flat = () => new Program(gl, {cullFace: false, uniforms: {plane: this.plane, tone: {value: [0, 0, 0]}}, vertex: "attribute vec3 position; uniform mat4 modelViewMatrix, projectionMatrix; varying vec3 p; void main() { p = position; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
       fragment: "precision highp float; uniform vec4 plane; uniform vec3 tone; varying vec3 p; void main() { if (dot(plane.xyz, p) > plane.w) discard; gl_FragColor = vec4(tone, 1.0); }"});
-    this.frameProgram = flat(); this.arrowProgram = flat(); this.driveProgram = flat();
-    for (const program of [this.frameProgram, this.driveProgram]) program.uniforms.plane = {value: SpaceView.uncut};
-    this.rim = new Geometry(gl, {position: dynamic(3, 4)});
+    this.frameProgram = flat(); this.arrowProgram = flat(); this.driveProgram = flat(); this.sectionProgram = flat();
+    for (const program of [this.frameProgram, this.driveProgram, this.sectionProgram]) program.uniforms.plane = {value: SpaceView.uncut};
+    this.rim = new Geometry(gl, {position: dynamic(3, 4)}); this.sectionRim = new Geometry(gl, {position: dynamic(3, 4)});
     this.arrowGeometry = new Geometry(gl, {position: dynamic(3, 9 * SpaceView.arrows)});
     const driven = drivenAlong(this.data), [lx, ly, lz] = this.shown, flow = Math.min(lx / 3, ly / 2);  // an arrow below the box
     if (driven) add(new Geometry(gl, {position: {size: 3, data: Float32Array.from(arrowTriangles([-driven * flow / 2, -ly / 2 * 1.12, lz / 2], [driven * flow, 0, 0], [0, 1, 0]))}}), this.driveProgram);
-    add(this.rim, this.frameProgram, gl.LINE_LOOP);
+    add(this.rim, this.frameProgram, gl.LINE_LOOP); add(this.sectionRim, this.sectionProgram, gl.LINE_LOOP);
     add(new Geometry(gl, {position: {size: 3, data: this.edges()}}), this.frameProgram, gl.LINES);
     this.glassPrograms = [];
     this.addPlanes(); if (this.data.walls?.surface) this.addWalls(this.data.walls.surface);
@@ -177,21 +177,23 @@ class SpaceView {
     this.camera.lookAt([0, 0, 0]);
     this.drawCut();
     this.drawArrows();
-    this.frameProgram.uniforms.tone.value = rgbOf(css("--quiet"));
+    this.frameProgram.uniforms.tone.value = rgbOf(css("--quiet")); this.sectionProgram.uniforms.tone.value = rgbOf(css("--accent"));
     this.arrowProgram.uniforms.tone.value = this.driveProgram.uniforms.tone.value = rgbOf(css("--text"));
     for (const program of this.glassPrograms) program.uniforms.tone.value = rgbOf(css("--quiet"));
     this.renderer.render({scene: this.scene, camera: this.camera});
   }
-  /// The plane as the shader takes it, on the side of the eye, and its rim in the box.
+  /// The plane as the shader takes it, on the side of the eye; its rim in the box, and that of the section beside this view.
   drawCut() {
-    const {axis, share} = this.cut, {position} = this.rim.attributes, plane = SpaceView.uncut.slice(), half = this.shown.map(l => l / 2);
-    position.data.fill(0);
-    if (axis !== null) {
-      const place = (share - .5) * this.shown[axis], side = this.camera.position[axis] < 0 ? -1 : 1, [u, v] = [0, 1, 2].filter(k => k !== axis);
-      plane[axis] = side; plane[3] = side * place;
-      [[-1, -1], [1, -1], [1, 1], [-1, 1]].forEach(([a, b], i) => { position.data[3 * i + axis] = place; position.data[3 * i + u] = a * half[u]; position.data[3 * i + v] = b * half[v]; });
-    }
-    position.needsUpdate = true;
+    const {axis, share} = this.cut, plane = SpaceView.uncut.slice(), half = this.shown.map(l => l / 2);
+    const frame = ({attributes: {position}}, axis, share) => {
+      const [u, v] = [0, 1, 2].filter(k => k !== axis);
+      position.data.fill(0);
+      if (axis !== null) [[-1, -1], [1, -1], [1, 1], [-1, 1]].forEach(([a, b], i) => { position.data[3 * i + axis] = (2 * share - 1) * half[axis]; position.data[3 * i + u] = a * half[u]; position.data[3 * i + v] = b * half[v]; });
+      position.needsUpdate = true;
+    };
+    if (axis !== null) { plane[axis] = this.camera.position[axis] < 0 ? -1 : 1; plane[3] = plane[axis] * (2 * share - 1) * half[axis]; }
+    frame(this.rim, axis, share);
+    frame(this.sectionRim, this.section ? 2 : null, this.section && this.section.z / this.section.length);
     this.plane.value = plane;
   }
   cutControls() {
@@ -218,7 +220,7 @@ class SpaceView {
   }
   /// What a picture in perspective wants beside it: the axes, and a length in the middle of the box.
   paintSigns(context, width, height) {
-    const [right, up] = this.directions, at = [34, height - 34], long = 22;
+    const [right, up] = this.directions, at = [34, width < 500 ? 34 : height - 34], long = 22;  // where the box is not
     context.font = "12px system-ui, sans-serif"; context.lineCap = "round";
     ["x", "y", "z"].forEach((name, k) => {
       const [dx, dy] = [right[k], -up[k]], far = Math.hypot(dx, dy);
