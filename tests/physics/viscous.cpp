@@ -1,4 +1,5 @@
 // Membranes whose tension depends on time: decay of a stretched ring, power in shear flow, memory over two stages.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <iostream>
@@ -164,6 +165,27 @@ TEST_CASE("the viscous membrane of a tumbling cell never gives the flow more tha
   CHECK(least_power >= 0);
   // The first step begins without tension and flow; its displacements are rounding.
   CHECK(least_work > -1e-15 * work);
+}
+
+TEST_CASE("a red cell of the largest viscosity measured goes through shear with the step of the plain scene",
+          "[viscous][space]") {
+  // Of an explicit step a sixtieth of 1e-6 N s/m is the limit (docs/results/membrane-viscosity-2026-11.md).
+  const SceneRun run =
+      run_scene(std::string(ROULEAU_SCENES) + "/red-cell-3d.json",
+                {R"(/domain/size=["14 um", "12 um", "12 um"])", R"(/domain/nodes=[42, 36, 36])",
+                 R"(/cells/0/at=["7 um", "6 um", "6 um"])", "/stages/0/strain=1", R"(/output/cells={"strain": 0.02})",
+                 R"(/cell_types/rbc/membrane/-={"model": "viscous", "parameters": {"viscosity": "1e-6 N s/m"}})"});
+  REQUIRE(run.summary["status"] == "completed");
+  const std::vector<double> lost = run.series_column("membrane_dissipation_W_per_m"),
+                            fluid = run.series_column("viscous_dissipation_W_per_m");
+  const double volume = run.column("volume_m3").back() / run.column("volume_m3").front() - 1;
+  std::cout << "red cell of 1e-6 N s/m: membrane's part of the dissipation "
+            << lost.back() / (lost.back() + fluid.back()) << ", least " << std::ranges::min(lost) / lost.back()
+            << " of it, volume " << volume << "\n";
+  CHECK(std::ranges::min(lost) >= 0);
+  CHECK(lost.back() > 0);
+  CHECK(fluid.back() == Approx(fluid[fluid.size() / 2]).epsilon(0.2));
+  CHECK(std::abs(volume) < 2e-3);
 }
 
 TEST_CASE("what a membrane remembers survives a stage with another time step", "[viscous]") {
