@@ -14,6 +14,7 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from .breaking import BreakUp as BreakUp, break_up as break_up
     from .calibrating import Calibration as Calibration, calibrate as calibrate
     from .comparing import Comparison as Comparison, compare as compare
     from .errors import Error as Error, Fault as Fault
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 __version__ = "0.3.0"
 
 _HOME = {
+    "break_up": "breaking", "BreakUp": "breaking",
     "calibrate": "calibrating", "Calibration": "calibrating",
     "Cell": "reading", "compare": "comparing", "Comparison": "comparing", "Error": "errors", "Fault": "errors",
     "Field": "reading", "FluidField": "simulation", "Frame": "reading", "mask": "shapes", "Mean": "reading", "mean_and_error": "reading",

@@ -12,7 +12,7 @@ Quantities are in SI units, unless a name says otherwise.
 GROUPS = {
     "Running": ["running"],
     "Reading": ["reading"],
-    "Sweeps, means and calibration": ["sweeping", "means", "calibrating"],
+    "Sweeps, means and calibration": ["sweeping", "means", "calibrating", "breaking"],
     "Comparing": ["comparing"],
     "Stepping": ["simulation"],
     "Models and walls": ["potentials", "shapes"],
