@@ -2,8 +2,8 @@
 // h5py open.
 //
 //   /                      attributes format, title, size_m [2], nodes [2], periodic_y, between openings
-//                          along x periodic_x, which is 0; where output.fields has a region or a stride: fields_first_m [2],
-//                          fields_spacing_m [2]; each [3] in three dimensions, with periodic_z
+//                          along x periodic_x, which is 0; where output.fields has a region or a stride:
+//                          fields_first_m [2], fields_spacing_m [2]; each [3] in three dimensions, with periodic_z
 //   /walls                 corners, first, segments; in three dimensions points, triangles: see WallBorder (walls.hpp)
 //   /frames/000000         attributes step, time_s, strain, stage, stage_name
 //     membranes/points     [n, 2] f64, m, not wrapped into the box; [n, 3] in three dimensions

@@ -34,8 +34,8 @@ class CellTraffic {
   void came(int cell, double volume, double time, int end, int opening = 0);
   /// It leaves through an end. Throws std::out_of_range for a cell that is not there.
   void left(int cell, double time, int end, int opening = 0);
-  /// What flows along the open axis through each opening of both ends at this time, cells included, m3/s or m2/s; it changes
-  /// linearly between two calls.
+  /// What flows along the open axis through each opening of both ends at this time, cells included, m3/s or m2/s; it
+  /// changes linearly between two calls.
   void flowed(const std::array<std::vector<double>, 2>& along_axis, double time);
 
   /// What has flowed in through the lower end, less what flowed out there, since the run began.

@@ -279,12 +279,11 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
     snapshot.shear_rate = units.to_si((walls.upper - walls.lower) / scene_->domain.nodes[1], units::dimension::rate);
   }
   if (is_driven_channel(setting, *scene_)) {
+    const scene::Domain& box = scene_->domain;
     const double rate = flow_rate(fluid, measured.row_velocities);
     if (!oscillates)
-      snapshot.relative_viscosity =
-          apparent_viscosity(rate / scene::duct_share(scene_->domain), drive, setting, scene_->domain.nodes[1]);
+      snapshot.relative_viscosity = apparent_viscosity(rate / scene::duct_share(box), drive, setting, box.nodes[1]);
     snapshot.flow_rate = units.to_si(rate, units::dimension::velocity) * units.length;
-    const scene::Domain& box = scene_->domain;
     snapshot.mean_velocity = snapshot.flow_rate;    // times what the flow rate is a mean over
     const int height = box.open_axis == 1 ? 0 : 1;  // the axis that it is an integral over
     for (int axis = 0; axis < box.dimension(); ++axis) snapshot.mean_velocity *= axis == height ? 1 : box.size[axis];

@@ -40,7 +40,7 @@ template <int D>
 double flow_rate(const core::AnyFluid<D>& fluid, const std::vector<double>& row_velocities) {
   const core::Domain<D>& domain = fluid.setting().domain;
   double rate = core::flow_rate(row_velocities, fluid.walls_now(), domain, fluid.setting().solid != nullptr);
-  if constexpr (D == 3) rate /= domain.size[domain.flow_axis() == 2 ? 0 : 2];
+  for (int axis = 2; axis < D; ++axis) rate /= domain.size[axis == domain.flow_axis() ? 0 : axis];
   return rate;
 }
 

@@ -33,9 +33,9 @@ double particle_stress(const core::Surfaces& surfaces, const scene::Scene& scene
 bool is_driven_channel(const scene::StageSetting& setting, const scene::Scene& scene);
 
 /// Integral of the velocity along x over the height, averaged over length and depth; lattice units. Between openings
-/// that is along their axis; the height is then x if they are along y, the depth x if along z. Exact for velocities that
-/// are parabolas in y (midpoint rule with its end correction; the walls' velocity counts as a value). From the mean
-/// velocities of the fluid's rows (core::FluidMeasures).
+/// that is along their axis; the height is then x if they are along y, the depth x if along z. Exact for velocities
+/// that are parabolas in y (midpoint rule with its end correction; the walls' velocity counts as a value). From the
+/// mean velocities of the fluid's rows (core::FluidMeasures).
 template <int D>
 double flow_rate(const core::AnyFluid<D>& fluid, const std::vector<double>& row_velocities);
 /// Of a settled fluid, between steps.
@@ -50,8 +50,8 @@ template <int D>
 double observe_openings(const core::AnyFluid<D>& fluid, const scene::Scene& scene, const units::LatticeUnits& units,
                         Snapshot& snapshot);
 
-/// Integral of the velocity along an axis over what the cells enclose, lattice units: from their membranes' velocities, for
-/// what they enclose keeps its volume. All ranks together.
+/// Integral of the velocity along an axis over what the cells enclose, lattice units: from their membranes' velocities,
+/// for what they enclose keeps its volume. All ranks together.
 double cell_flux(const core::Membranes& membranes, const core::Ranks<2>& ranks = {}, int axis = 0);
 double cell_flux(const core::Surfaces& surfaces, const core::Ranks<3>& ranks = {}, int axis = 0);
 

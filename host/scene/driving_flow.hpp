@@ -12,9 +12,9 @@ bool walls_move(const Stage& stage);
 /// walls of any shape: in a channel that is everywhere as wide as they are at the widest place).
 Vector driving_force(const Stage& stage, const Scene& scene);
 
-/// Its part that stands for openings, along their axis, N/m3: what would drive a channel or tube that is everywhere as wide as
-/// the domain at its widest place as fast as the fluid is where it is fastest, at a mean velocity of the inlet; between
-/// two pressures their mean gradient. 0 without openings, and where no wall holds the flow.
+/// Its part that stands for openings, along their axis, N/m3: what would drive a channel or tube that is everywhere as
+/// wide as the domain at its widest place as fast as the fluid is where it is fastest, at a mean velocity of the inlet;
+/// between two pressures their mean gradient. 0 without openings, and where no wall holds the flow.
 double opening_drive(const Scene& scene);
 
 /// Whether the flow that a stage settles to without cells is known, so that `"start": "developed"` can begin with it.

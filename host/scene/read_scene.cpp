@@ -48,9 +48,7 @@ void read_ends(const SceneFields& fields, Domain& domain, int axis) {
   const bool inlet = fields.has(key + "/lower/inlet"), outlet = fields.has(key + "/upper/outlet");
   domain.periodic[axis] = axis == 0 ? !ends.is_object() : ends.is_string();
   if (inlet != outlet && axis > 0)
-    fields.refuse(key, std::string("what has an ") +
-                           (inlet ? "inlet below has an outlet above" : "outlet above has an inlet below") +
-                           "\ngive both ends walls, or an inlet and an outlet");
+    fields.refuse(key, "an inlet below goes with an outlet above\ngive both ends walls, or an inlet and an outlet");
   if (domain.periodic[axis] || !(axis == 0 || inlet)) return;
   if (domain.is_open())
     fields.refuse(key, std::string("the domain is open along ") + axis_names[domain.open_axis] +

@@ -477,7 +477,7 @@ class Openings(unittest.TestCase):
                 (changed(FED_ALONG_Y, domain__obstacles=[{"box": {"lower": ["0 um", "20 um"], "upper": ["18 um", "29 um"]}}]),
                  "lower end along y"),
                 (changed(CHANNEL, domain__y=ends(VELOCITY)), "open along x already"),
-                (changed(CHANNEL, domain__x="periodic", domain__y={**ends(VELOCITY), "upper": {"wall": {}}}), "inlet below has an outlet above"),
+                (changed(CHANNEL, domain__x="periodic", domain__y={**ends(VELOCITY), "upper": {"wall": {}}}), "an inlet below goes with an outlet above"),
                 (changed(FED_ALONG_Y, stages__0={"name": "s", "shear_rate": "1 1/s", "duration": "1 ms"}, interactions=[]), "shear_rate"),
                 (changed(FED_ALONG_Y, stages__0__mean_velocity="1 mm/s"), "give domain.y.lower.inlet"),
                 (changed(FED_ALONG_Y, fluid__body_force=["0 N/m3", "1 N/m3"]), "drive the flow along y"),

@@ -74,8 +74,8 @@ struct FluidMeasures {
   /// none.
   double mass, speed;
   std::optional<Energetics<D>> energetics;  ///< if it was wanted
-  /// Mean velocity along Domain::flow_axis of each row (flow_rate.hpp), solid nodes counted as fluid at rest; empty if it was not
-  /// wanted.
+  /// Mean velocity along Domain::flow_axis of each row (flow_rate.hpp), solid nodes counted as fluid at rest; empty if
+  /// it was not wanted.
   std::vector<double> row_velocities;
 };
 

@@ -321,8 +321,8 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
     const auto wall_of = [&](const auto& c) {
       return !beyond(1, c[1]) ? Sums::other : c[1] < 0 ? Sums::lower : Sums::upper;
     };
-    // Along the open axis, what pressure gives to a wall by a link in direction q that crosses an opening, too: that is the
-    // opening's. Elsewhere such links come in pairs, and their pressures cancel.
+    // Along the open axis, what pressure gives to a wall by a link in direction q that crosses an opening, too: that is
+    // the opening's. Elsewhere such links come in pairs, and their pressures cancel.
     const auto of_opening = [&](const auto& in, int q, int x) {
       const int place = (open == 0 ? x : row[std::max(open - 1, 0)]) + Set::velocity[q][open];
       if (!(place < 0 && domain.wall_below(open)) && !(place >= state.lattice.size(open) && domain.wall_above(open)))

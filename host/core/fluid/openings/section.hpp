@@ -43,8 +43,8 @@ class SectionNodes {
   int axis_;
 };
 
-/// Of the fluid nodes of a lattice at one place along the axis, if the section there goes on without end. Walls lie where the lattice's
-/// links are cut, and velocities are exact between planes (Shortley and Weller, J. Appl. Phys. 9,
+/// Of the fluid nodes of a lattice at one place along the axis, if the section there goes on without end. Walls lie
+/// where the lattice's links are cut, and velocities are exact between planes (Shortley and Weller, J. Appl. Phys. 9,
 /// 334, 1938). Several channels beside each other have one pressure gradient.
 struct Section {
   /// By node of the section, 0 in the solid: the velocity along the axis for each force per volume over the viscosity,
