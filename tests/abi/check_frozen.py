@@ -1,6 +1,6 @@
-"""What was released first must never change, and goes on working in whole runs. Python's standard library only.
+"""What was released must never change, and goes on working in whole runs. Python's standard library only.
 
-usage: check_frozen.py ROULEAU FROZEN_PLUGINS C_COMPILER
+usage: check_frozen.py ROULEAU FROZEN_PLUGINS FROZEN_PLUGINS_1_1 C_COMPILER
 """
 
 import csv
@@ -14,8 +14,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-PROGRAM, PLUGINS = (Path(a).resolve() for a in sys.argv[1:3])
-COMPILER = sys.argv[3]
+PROGRAM, PLUGINS, PLUGINS_1_1 = (Path(a).resolve() for a in sys.argv[1:4])
+COMPILER = sys.argv[4]
 FOLDER = Path(__file__).resolve().parent
 FROZEN = FOLDER / "frozen-1.0"
 HEADER = FOLDER.parent.parent / "sdk/include/rouleau/plugin.h"
@@ -37,6 +37,15 @@ RELEASED = {
     "membrane.c": "2d0a5fa0a097768d75ea46b41e31f8c6592eea839fcf260184995f68cf644fc6",
     "rouleau/plugin.h": "40847be47fbc714e2df46990205d20d68e0f7c00dd3a6114bcb3ffbdf6c6707d",
 }
+# What interface 1.1 adds, likewise.
+RELEASED_1_1 = {
+    ".clang-format": "b31f421733899646b1bafbeb8ab3dda7391a50169ecac50f16ce7f6abd80409a",
+    "README.md": "9d99ea130c539a23261dcc6dc6dc404d31dac6610be548b7f991d504c48fe232",
+    "membrane-elastic.json": "c1b11e73a906c11418874aae65eccfad5f56d1db63e257d91aa46996d72591a0",
+    "membrane-viscous.json": "5a41f1f9bb5c96348a32b2634d6efbec86efaa030344008b84b3844051381b1a",
+    "membrane.c": "2e777ffbca21981b8fd3e0fe0f9f535fb929dbaac5c291ecc18c800482a4f1a1",
+    "rouleau/plugin.h": "4b635da10a502fa6bdca61cdff29634be869170794e5dc2a6269ff796049dd3b",
+}
 
 SCENE = {
     "rouleau": 1, "title": "Two cells of the first release's models",
@@ -54,6 +63,17 @@ SCENE = {
     "stages": [{"name": "shear", "shear_rate": "20 1/s", "strain": 0.5}],
     "output": {"cells": {"strain": 0.1}},
 }
+SURFACE = {
+    "rouleau": 1, "title": "A sphere of the laws of interface 1.1",
+    "domain": {"size": ["8 um", "8 um", "8 um"], "nodes": [20, 20, 20], "y": {"lower": {"wall": {}}, "upper": {"wall": {}}}},
+    "fluid": {"density": "1 g/cm3", "viscosity": "1.2 cP"}, "numerics": {"tau": 1, "density_factor": 1000},
+    "cell_types": {"cell": {"shape": {"sphere": {"radius": "2 um"}}, "membrane": [
+        {"model": "frozen.elastic-surface", "parameters": {"modulus": "5e-6 N/m"}},
+        {"model": "frozen.viscous-surface", "parameters": {"viscosity": "2e-8 N s/m", "area_viscosity": "4e-8 N s/m"}}]}},
+    "cells": [{"type": "cell", "at": ["4 um", "4 um", "4 um"]}],
+    "stages": [{"name": "shear", "shear_rate": "200 1/s", "strain": 0.5}],
+    "output": {"cells": {"strain": 0.1}},
+}
 NO_BRANCH = {"branch_modulus": 0, "viscosity": 0}
 BRUSH = {"between": ["cell", "cell"], "model": "frozen.brush",
          "parameters": {"chains": "1e3 1/um2", "thickness": "1 um"}}
@@ -66,9 +86,10 @@ def declarations(text):
 
 class The_first_release(unittest.TestCase):
     def test_none_of_its_files_has_changed(self):
-        found = {str(f.relative_to(FROZEN)): hashlib.sha256(f.read_bytes()).hexdigest()
-                 for f in sorted(FROZEN.rglob("*")) if f.is_file()}
-        self.assertEqual(found, RELEASED)
+        for folder, released in (FROZEN, RELEASED), (FOLDER / "frozen-1.1", RELEASED_1_1):
+            found = {str(f.relative_to(folder)): hashlib.sha256(f.read_bytes()).hexdigest()
+                     for f in sorted(folder.rglob("*")) if f.is_file()}
+            self.assertEqual(found, released)
 
     def test_its_header_is_that_of_the_sdk_while_no_field_was_appended(self):
         text = HEADER.read_text()
@@ -91,8 +112,8 @@ class The_first_release(unittest.TestCase):
 
 class Conforms(unittest.TestCase):
     def test_its_plugins_pass_the_conformance_checks_of_this_release(self):
-        result = subprocess.run([PROGRAM, "conform", *sorted(PLUGINS.glob("*.json"))], capture_output=True, text=True,
-                                timeout=250)
+        manifests = sorted([*PLUGINS.glob("*.json"), *PLUGINS_1_1.glob("*.json")])
+        result = subprocess.run([PROGRAM, "conform", *manifests], capture_output=True, text=True, timeout=250)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
 
 
@@ -108,7 +129,7 @@ class Runs(unittest.TestCase):
         file, out = self.path / f"{name}.json", self.path / name
         file.write_text(json.dumps(scene))
         environment = {k: v for k, v in os.environ.items() if k != "ROULEAU_PLUGIN_PATH"}
-        result = subprocess.run([PROGRAM, "run", file, "--plugin-dir", PLUGINS, "--out", out, "--quiet"],
+        result = subprocess.run([PROGRAM, "run", file, "--plugin-dir", PLUGINS, "--plugin-dir", PLUGINS_1_1, "--out", out, "--quiet"],
                                 capture_output=True, text=True, timeout=250, env=environment)
         self.assertEqual(result.returncode, 0, result.stderr)
         with open(out / "cells.csv", newline="") as table:
@@ -135,6 +156,21 @@ class Runs(unittest.TestCase):
                 # Round-off of some thousand steps, relative to the cell.
                 scale = {"deformation": 1, "area_m2": 1.3e-11}.get(column, 1e-5)
                 self.assertLess(abs(one[column] - other[column]) / scale, 1e-9, column)
+
+    def test_surfaces_deform_as_with_the_shipped_models_of_the_same_formulas(self):
+        summary, frozen = self.run_scene("frozen", SURFACE)
+        self.assertEqual({p["id"] for p in summary["plugins"]} & {"frozen.elastic-surface", "frozen.viscous-surface"},
+                         {"frozen.elastic-surface", "frozen.viscous-surface"})
+        scene = json.loads(json.dumps(SURFACE))
+        laws = scene["cell_types"]["cell"]["membrane"]
+        laws[0] = {"model": "neo-hookean", "parameters": {"shear_modulus": "5e-6 N/m"}}
+        laws[1]["model"] = "viscous"
+        _, shipped = self.run_scene("shipped", scene)
+        del laws[1]
+        _, elastic = self.run_scene("elastic", scene)
+        for one, other in zip(frozen[1:], shipped[1:], strict=True):
+            self.assertLess(abs(one["deformation"] / other["deformation"] - 1), 1e-9)
+        self.assertGreater(elastic[-1]["deformation"], 1.05 * frozen[-1]["deformation"])
 
     def test_a_brush_pushes_cells_apart_and_keeps_their_common_centre(self):
         scene = json.loads(json.dumps(SCENE))
