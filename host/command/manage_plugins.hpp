@@ -1,4 +1,4 @@
-// Plugins of the user's own folder: rouleau plugins --install DIR; and the lock of a scene: rouleau plugins --lock SCENE.
+// Plugins of the user's own folder: rouleau plugins --install DIR; the lock of a scene: rouleau plugins --lock SCENE.
 #pragma once
 
 #include <filesystem>

@@ -256,8 +256,7 @@ TEST_CASE("the shipped schemas are draft 7") {
 }
 
 TEST_CASE("the schemas of a scene, a manifest and a lock close every object and document every key") {
-  for (const auto* schema :
-       {&scene::scene_schema(), &plugin::manifest_schema(), &plugin::lock_schema()}) {
+  for (const auto* schema : {&scene::scene_schema(), &plugin::manifest_schema(), &plugin::lock_schema()}) {
     walk(*schema, "", [&](const Json& rule, const std::string& pointer) {
       INFO(pointer);
       if (!rule.is_object() || !rule.contains("properties") || !rule["properties"].is_object()) return;

@@ -53,8 +53,8 @@ class SolidLinks {
     for (Link& link : of_piece(piece)) link.left -= given(link);
   }
   /// Of a fluid that has been set to rest while walls move: they have brought in half of what they bring in a step.
-  /// Momentum of alternating sign along the lattice is conserved but for its sign; what a wall brings of it in each step
-  /// would go on to alternate between nothing and all of it, and begins here at its mean instead.
+  /// Momentum of alternating sign along the lattice is conserved but for its sign. What a wall brings of it in a step
+  /// would alternate between nothing and all of it for ever; it begins at its mean.
   void start_walls() {
     for (std::size_t i = 0; i < given_.size(); ++i) links_[i].left += given_[i] / 2;
   }
