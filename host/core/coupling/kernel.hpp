@@ -112,77 +112,98 @@ struct Sharp6 : Peskin4 {
   static constexpr bool halved = false;
 };
 
-/// Numbers side by side, at least as many as a kernel has points: six lie in a register of eight, so that a row
-/// takes one load and one store. What lies beside the points is read and written back, but is part of no sum.
-template <class T, int points>
+/// Numbers side by side, at least as many as a kernel has points: six lie in eight lanes, so that a row takes one load
+/// and one store of a register, or few of registers of `register_bytes`. What lies beside the points is read and
+/// written back, but is part of no sum.
+template <class T, int points, int register_bytes = 64>
 struct Line {
-  using Lanes = rouleau::Pack<T, points <= 4 ? 4 : 8>;
-  Lanes lanes;
-  ROULEAU_ALWAYS_INLINE static Line load(const T* from) { return {Lanes::load(from)}; }
-  ROULEAU_ALWAYS_INLINE static Line all(T value) { return {Lanes(value)}; }
-  ROULEAU_ALWAYS_INLINE void store(T* to) const { lanes.store(to); }
+  static constexpr int size = points <= 4 ? 4 : 8, spare = size - points;
+  static constexpr int width =
+      size * static_cast<int>(sizeof(T)) <= register_bytes ? size : register_bytes / static_cast<int>(sizeof(T));
+  static constexpr int parts = size / width;
+  using Lanes = rouleau::Pack<T, width>;
+  Lanes lanes[parts];
+  ROULEAU_ALWAYS_INLINE static Line load(const T* from) {
+    Line line;
+    for (int p = 0; p < parts; ++p) line.lanes[p] = Lanes::load(from + p * width);
+    return line;
+  }
+  ROULEAU_ALWAYS_INLINE static Line all(T value) {
+    Line line;
+    for (int p = 0; p < parts; ++p) line.lanes[p] = Lanes(value);
+    return line;
+  }
+  ROULEAU_ALWAYS_INLINE void store(T* to) const {
+    for (int p = 0; p < parts; ++p) lanes[p].store(to + p * width);
+  }
   /// `b`: the same number in all lanes.
-  ROULEAU_ALWAYS_INLINE friend Line operator*(const Line& a, const Lanes& b) { return {a.lanes * b}; }
-  ROULEAU_ALWAYS_INLINE friend Line operator*(const Line& a, const Line& b) { return {a.lanes * b.lanes}; }
-  ROULEAU_ALWAYS_INLINE friend Line operator+(const Line& a, const Line& b) { return {a.lanes + b.lanes}; }
-  [[nodiscard]] ROULEAU_ALWAYS_INLINE T at(int k) const { return lanes.vector[k]; }
-  static constexpr int spare = Lanes::size - points;
+  ROULEAU_ALWAYS_INLINE friend Line operator*(const Line& a, const Lanes& b) {
+    Line line;
+    for (int p = 0; p < parts; ++p) line.lanes[p] = a.lanes[p] * b;
+    return line;
+  }
+  ROULEAU_ALWAYS_INLINE friend Line operator*(const Line& a, const Line& b) {
+    Line line;
+    for (int p = 0; p < parts; ++p) line.lanes[p] = a.lanes[p] * b.lanes[p];
+    return line;
+  }
+  ROULEAU_ALWAYS_INLINE friend Line operator+(const Line& a, const Line& b) {
+    Line line;
+    for (int p = 0; p < parts; ++p) line.lanes[p] = a.lanes[p] + b.lanes[p];
+    return line;
+  }
+  [[nodiscard]] ROULEAU_ALWAYS_INLINE T at(int k) const { return lanes[k / width].vector[k % width]; }
   /// How many of the spare lanes are to lie before a kernel's first point, which is there: so many that a line of the
   /// cache holds all, if it holds the points. What crosses a border of these takes twice as long.
   [[nodiscard]] ROULEAU_ALWAYS_INLINE static int lanes_before(const T* first_point) {
     if constexpr (spare == 0) return 0;
     constexpr int cached = 64 / sizeof(T);
     const int beyond =
-        static_cast<int>(reinterpret_cast<std::uintptr_t>(first_point) / sizeof(T) % cached) + Lanes::size - cached;
+        static_cast<int>(reinterpret_cast<std::uintptr_t>(first_point) / sizeof(T) % cached) + size - cached;
     return beyond > 0 && beyond <= spare ? beyond : 0;
   }
-  /// The points in the first lanes, of a line that has so many before them.
-  [[nodiscard]] ROULEAU_ALWAYS_INLINE Line moved_back(int before) const {
-    if constexpr (spare == 0) return *this;
-    T all[Lanes::size + spare] = {};
-    store(all);
-    return load(all + before);
-  }
-  /// Four numbers with the same sum.
-  [[nodiscard]] ROULEAU_ALWAYS_INLINE rouleau::Pack<T, 4> folded() const {
-    if constexpr (points == 4) {
-      return lanes;
+  /// Four numbers with the same sum, of a line that has so many spare lanes before its points.
+  [[nodiscard]] ROULEAU_ALWAYS_INLINE rouleau::Pack<T, 4> folded(int before = 0) const {
+    using Four = rouleau::Pack<T, 4>;
+    if constexpr (points == 4 && parts == 1) {
+      return lanes[0];
     } else {
-      const typename Lanes::Vector none{};
-      using Four = rouleau::Pack<T, 4>;
-      return Four(__builtin_shufflevector(lanes.vector, lanes.vector, 0, 1, 2, 3)) +
-             Four(__builtin_shufflevector(lanes.vector, none, 4, 5, 8, 8));
+      T all[size + spare] = {};
+      store(all);
+      if constexpr (points == 4) return Four::load(all);
+      const T rest[4] = {all[before + 4], all[before + 5]};
+      return Four::load(all + before) + Four::load(rest);
     }
   }
 };
 
 /// The weights side by side, and none beside them; `before`: Line.
-template <class Kernel, class T>
+template <class Kernel, class T, int register_bytes = 64>
 struct KernelWeights {
-  using Weights = Line<T, Kernel::points>;
+  using Weights = Line<T, Kernel::points, register_bytes>;
   Weights weight;
   ROULEAU_ALWAYS_INLINE KernelWeights(T p, T q, int before = 0) {
     static constexpr auto constant = filled_up(Kernel::constant), by_p = filled_up(Kernel::by_p),
                           by_q = filled_up(Kernel::by_q);
     const int from = Weights::spare - before;
-    weight = {(Lanes::load(constant.data() + from) + Lanes::load(by_p.data() + from) * Lanes(p)) +
-              Lanes::load(by_q.data() + from) * Lanes(q)};
+    weight = (Weights::load(constant.data() + from) + Weights::load(by_p.data() + from) * Lanes(p)) +
+             Weights::load(by_q.data() + from) * Lanes(q);
   }
 
  private:
   using Lanes = typename Weights::Lanes;
   template <class Numbers>
-  static constexpr std::array<T, Lanes::size + Weights::spare> filled_up(const Numbers& numbers) {
-    std::array<T, Lanes::size + Weights::spare> all{};
+  static constexpr std::array<T, Weights::size + Weights::spare> filled_up(const Numbers& numbers) {
+    std::array<T, Weights::size + Weights::spare> all{};
     for (int k = 0; k < Kernel::points; ++k) all[Weights::spare + k] = static_cast<T>(numbers[k]);
     return all;
   }
 };
 
 /// The weights one by one, each in all lanes of a line.
-template <class Kernel, class T>
+template <class Kernel, class T, int register_bytes = 64>
 struct SpreadWeights {
-  using Lanes = typename Line<T, Kernel::points>::Lanes;
+  using Lanes = typename Line<T, Kernel::points, register_bytes>::Lanes;
   Lanes weight[Kernel::points];
   ROULEAU_ALWAYS_INLINE SpreadWeights(T p, T q) {
     const Lanes kept_p = p, kept_q = q;

@@ -1,3 +1,4 @@
+#include "base/worker.hpp"
 #include "core/fluid/walls.hpp"
 #include "stencils.hpp"
 
@@ -6,13 +7,13 @@ namespace rouleau::core {
 namespace {
 
 /// Weights of a node's stencil: along x, and one for each of its rows. `before`: Line.
-template <class T, class Kernel>
+template <class T, class Kernel, int register_bytes>
 struct StencilWeights {
-  using Lanes = typename Line<T, Kernel::points>::Lanes;
-  Line<T, Kernel::points> along_x;
-  SpreadWeights<Kernel, T> y, z;
+  using Lanes = typename Line<T, Kernel::points, register_bytes>::Lanes;
+  Line<T, Kernel::points, register_bytes> along_x;
+  SpreadWeights<Kernel, T, register_bytes> y, z;
   ROULEAU_ALWAYS_INLINE StencilWeights(const Stencils<const int, const T, 3>& at, int i, int before)
-      : along_x(KernelWeights<Kernel, T>(at.p[0][i], at.q[0][i], before).weight),
+      : along_x(KernelWeights<Kernel, T, register_bytes>(at.p[0][i], at.q[0][i], before).weight),
         y(at.p[1][i], at.q[1][i]),
         z(at.p[2][i], at.q[2][i]) {}
   [[nodiscard]] ROULEAU_ALWAYS_INLINE Lanes of_row(int along_z, int along_y) const {
@@ -20,18 +21,16 @@ struct StencilWeights {
   }
 };
 
-template <class T, class Kernel>
-struct SpreadSurface {
-  template <int register_bytes>
-  ROULEAU_ALWAYS_INLINE static void run(const SpreadTask<T, 3>* task) {
-    const SpreadTask<T, 3> t = *task;
-    for (int i = t.begin; i < t.end; ++i) spread(t, i);
-  }
-
- private:
+template <class T, class Kernel, int register_bytes>
+class SpreadNode {
   static constexpr int points = Kernel::points, start = Kernel::first;
-  using Forces = Line<T, points>;
-  ROULEAU_ALWAYS_INLINE static void spread(const SpreadTask<T, 3>& t, int i) {
+  using Forces = Line<T, points, register_bytes>;
+  using Lanes = typename Forces::Lanes;
+  using Weights = StencilWeights<T, Kernel, register_bytes>;
+
+ public:
+  /// `planes`: where the rows lie along z.
+  ROULEAU_ALWAYS_INLINE static void spread(const SpreadTask<T, 3>& t, Range planes, int i) {
     const Box<3>& block = t.domain->block;
     const int height = block.size(1);
     const int x = t.at.base[0][i] + start, y = t.at.base[1][i] + start, z = t.at.base[2][i] + start;
@@ -43,107 +42,122 @@ struct SpreadSurface {
         const bool within = from[k] >= 0 && from[k] + points <= t.domain->size[k];
         if (within && (from[k] + points <= block.begin[k] || from[k] >= block.end[k])) return;
       }
-      return spread_at_border(t, i);
+      return spread_at_border(t, planes, i);
     }
     const int first = y - block.begin[1] + height * (z - block.begin[2]), last = first + (points - 1) * (1 + height);
     if (last < t.row_begin || first >= t.row_end) return;
     const std::ptrdiff_t corner = z * t.stride[2] + y * t.stride[1] + x;
     const int before = Forces::lanes_before(t.origin[0] + corner);
-    const StencilWeights<T, Kernel> weights(t.at, i, before);
-    using Lanes = typename Forces::Lanes;
-    const Forces fx = weights.along_x * Lanes(t.force[0][i]), fy = weights.along_x * Lanes(t.force[1][i]),
-                 fz = weights.along_x * Lanes(t.force[2][i]);
-    if (first >= t.row_begin && last < t.row_end) {
-      add<true>(t, weights, {fx, fy, fz}, corner - before, first);
-    } else {
-      add<false>(t, weights, {fx, fy, fz}, corner - before, first);
-    }
-  }
-  /// Adds to the nodes from `at` on: to all of them, or to those in rows that are to be added to; `first` is that of
-  /// `at`.
-  template <bool whole>
-  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T, 3>& t, const StencilWeights<T, Kernel>& weights,
-                                        const std::array<Forces, 3>& force, std::ptrdiff_t at, int first) {
-    const int height = t.domain->block.size(1);
+    const Weights weights(t.at, i, before);
+    const std::array<Forces, 3> force = forces(t, i, weights.along_x);
     for (int m = 0; m < points; ++m) {
-      T *to_x = t.origin[0] + at + m * t.stride[2], *to_y = t.origin[1] + at + m * t.stride[2],
-        *to_z = t.origin[2] + at + m * t.stride[2];
-#pragma GCC unroll 6
-      for (int l = 0; l < points; ++l) {
-        const int row = first + l + height * m;
-        if (whole || (row >= t.row_begin && row < t.row_end)) {
-          const auto weight = weights.of_row(m, l);
-          (Forces::load(to_x) + force[0] * weight).store(to_x);
-          (Forces::load(to_y) + force[1] * weight).store(to_y);
-          (Forces::load(to_z) + force[2] * weight).store(to_z);
-        }
-        to_x += t.stride[1], to_y += t.stride[1], to_z += t.stride[1];
+      const std::ptrdiff_t at = corner - before + m * t.stride[2];
+      const int row = first + height * m;
+      if (row >= t.row_begin && row + points <= t.row_end) {
+        add<true>(t, weights, m, force, at, row);
+      } else if (row + points > t.row_begin && row < t.row_end) {
+        add<false>(t, weights, m, force, at, row);
       }
     }
   }
 
-  struct Image {
-    int node;
-    int sign;  // -1 beyond a wall, where a force acts on the mirrored node with reversed sign
-  };
-  static Image image(const Domain<3>& domain, int axis, int node) {
-    const int wrapped = domain.wrapped(axis, node);
-    return wrapped >= 0 ? Image{wrapped, 1} : Image{mirrored(node, domain.size[axis]), -1};
+ private:
+  ROULEAU_ALWAYS_INLINE static std::array<Forces, 3> forces(const SpreadTask<T, 3>& t, int i, const Forces& along_x) {
+    return {along_x * Lanes(t.force[0][i]), along_x * Lanes(t.force[1][i]), along_x * Lanes(t.force[2][i])};
   }
+  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T, 3>& t, const Lanes& weight,
+                                        const std::array<Forces, 3>& force, std::ptrdiff_t at) {
+    for (int c = 0; c < 3; ++c) {
+      T* const to = t.origin[c] + at;
+      (Forces::load(to) + force[c] * weight).store(to);
+    }
+  }
+  /// Adds to plane m of a stencil, from `at` on, which lies in this row: to all of its rows, or to those that are to be
+  /// added to.
+  template <bool whole>
+  ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T, 3>& t, const Weights& weights, int m,
+                                        const std::array<Forces, 3>& force, std::ptrdiff_t at, int row) {
+#pragma GCC unroll 6
+    for (int l = 0; l < points; ++l, at += t.stride[1]) {
+      if (whole || (row + l >= t.row_begin && row + l < t.row_end)) add(t, weights.of_row(m, l), force, at);
+    }
+  }
+
+  /// What a stencil's points along an axis are images of.
+  struct Images {
+    int node[points];
+    T sign[points];  ///< -1 beyond a wall, where a force acts on the mirrored node with reversed sign
+    ROULEAU_ALWAYS_INLINE Images(const Domain<3>& domain, int axis, int first) {
+      for (int k = 0; k < points; ++k) {
+        const int wrapped = domain.wrapped(axis, first + k);
+        node[k] = wrapped >= 0 ? wrapped : mirrored(first + k, domain.size[axis]);
+        sign[k] = wrapped >= 0 ? T(1) : T(-1);
+      }
+    }
+  };
   /// The same sums: of a stencil that reaches over the border of the lattice or of the block. Where it does so along x,
   /// its points are among the first and the last nodes of a row.
-  ROULEAU_ALWAYS_INLINE static void spread_at_border(const SpreadTask<T, 3>& t, int i) {
+  ROULEAU_ALWAYS_INLINE static void spread_at_border(const SpreadTask<T, 3>& t, Range planes, int i) {
     if (t.at.base[2][i] == outside) return;
     const Domain<3>& domain = *t.domain;
+    const Images along_z(domain, 2, t.at.base[2][i] + start);
+    bool any = false;
+    for (const int z : along_z.node) any = any || (z >= planes.begin && z < planes.end);
+    if (!any) return;
+    const Images along_x(domain, 0, t.at.base[0][i] + start), along_y(domain, 1, t.at.base[1][i] + start);
+    Weights weights(t.at, i, 0);
+    for (int k = 0; k < points; ++k) {
+      weights.y.weight[k] = weights.y.weight[k] * Lanes(along_y.sign[k]);
+      weights.z.weight[k] = weights.z.weight[k] * Lanes(along_z.sign[k]);
+    }
     const Box<3>& block = domain.block;
-    const StencilWeights<T, Kernel> weights(t.at, i, 0);
-    Image image_of[3][points];
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int k = 0; k < points; ++k) image_of[axis][k] = image(domain, axis, t.at.base[axis][i] + start + k);
-    }
-    const auto& [along_x, along_y, along_z] = image_of;
     const int x = t.at.base[0][i] + start;
-    const bool within = x >= block.begin[0] && x + points <= block.end[0];
-    using Lanes = typename Forces::Lanes;
+    if (x >= block.begin[0] && x + points <= block.end[0])
+      return add_images(t, planes, weights, along_y, along_z, forces(t, i, weights.along_x), x);
     // What a node of a row gets of the force along x, from the first node of either part on.
-    constexpr int width = Lanes::size;
-    int first[2] = {block.begin[0], std::max(block.begin[0], block.end[0] - width)};
+    constexpr int width = Forces::size;
+    const int first[2] = {block.begin[0], std::max(block.begin[0], block.end[0] - width)};
     T along[2][width] = {};
-    bool reached[2] = {within, false};
-    if (within) {
-      first[0] = x;
-      weights.along_x.store(along[0]);
-    } else {
-      for (int k = 0; k < points; ++k) {
-        const auto& [node, sign] = along_x[k];
-        if (node < block.begin[0] || node >= block.end[0]) continue;
-        const int part = node < first[0] + width ? 0 : 1;
-        along[part][node - first[part]] += static_cast<T>(sign) * weights.along_x.at(k);
-        reached[part] = true;
-      }
+    bool reached[2] = {};
+    for (int k = 0; k < points; ++k) {
+      const int node = along_x.node[k];
+      if (node < block.begin[0] || node >= block.end[0]) continue;
+      const int part = node < first[0] + width ? 0 : 1;
+      along[part][node - first[part]] += along_x.sign[k] * weights.along_x.at(k);
+      reached[part] = true;
     }
-    Forces force[2][3];
     for (int part = 0; part < 2; ++part) {
-      for (int c = 0; c < 3; ++c) force[part][c] = Forces::load(along[part]) * Lanes(t.force[c][i]);
+      if (reached[part])
+        add_images(t, planes, weights, along_y, along_z, forces(t, i, Forces::load(along[part])), first[part]);
     }
+  }
+  ROULEAU_ALWAYS_INLINE static void add_images(const SpreadTask<T, 3>& t, Range planes, const Weights& weights,
+                                               const Images& along_y, const Images& along_z,
+                                               const std::array<Forces, 3>& force, int x) {
+    const Box<3>& block = t.domain->block;
     for (int m = 0; m < points; ++m) {
-      const Image& z = along_z[m];
+      const int z = along_z.node[m];
+      if (z < planes.begin || z >= planes.end) continue;
+      const int first = block.size(1) * (z - block.begin[2]) - block.begin[1];
+      const std::ptrdiff_t at = z * t.stride[2] + x;
       for (int l = 0; l < points; ++l) {
-        const Image& y = along_y[l];
-        if (y.node < block.begin[1] || y.node >= block.end[1]) continue;
-        const int row = y.node - block.begin[1] + block.size(1) * (z.node - block.begin[2]);
-        if (row < t.row_begin || row >= t.row_end) continue;
-        const Lanes weight = Lanes(static_cast<T>(y.sign * z.sign)) * weights.of_row(m, l);
-        for (int c = 0; c < 3; ++c) {
-          T* const row_of_force = t.origin[c] + z.node * t.stride[2] + y.node * t.stride[1];
-          for (int part = 0; part < 2; ++part) {
-            if (!reached[part]) continue;
-            T* const to = row_of_force + first[part];
-            (Forces::load(to) + force[part][c] * weight).store(to);
-          }
-        }
+        const int y = along_y.node[l];
+        if (y < block.begin[1] || y >= block.end[1] || first + y < t.row_begin || first + y >= t.row_end) continue;
+        add(t, weights.of_row(m, l), force, at + y * t.stride[1]);
       }
     }
+  }
+};
+
+template <class T, class Kernel>
+struct SpreadSurface {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const SpreadTask<T, 3>* task) {
+    const SpreadTask<T, 3> t = *task;
+    const Box<3>& block = t.domain->block;
+    const int layer = block.size(1);
+    const Range planes{block.begin[2] + t.row_begin / layer, block.begin[2] + (t.row_end + layer - 1) / layer};
+    for (int i = t.begin; i < t.end; ++i) SpreadNode<T, Kernel, register_bytes>::spread(t, planes, i);
   }
 };
 
@@ -153,7 +167,7 @@ struct InterpolateSurface {
   ROULEAU_ALWAYS_INLINE static void run(const InterpolateTask<T, 3>* task) {
     const InterpolateTask<T, 3> t = *task;
     constexpr int points = Kernel::points, start = Kernel::first;
-    using Velocities = Line<T, points>;
+    using Velocities = Line<T, points, register_bytes>;
     for (int i = t.begin; i < t.end; ++i) {
       if (t.at.base[2][i] == outside) {
         for (double* velocity : t.velocity) velocity[i] = 0;
@@ -166,7 +180,7 @@ struct InterpolateSurface {
           (t.at.base[2][i] + start) * t.stride[2] + (t.at.base[1][i] + start) * t.stride[1] + t.at.base[0][i] + start;
       const int before = Velocities::lanes_before(t.origin[0] + at);
       at -= before;
-      const StencilWeights<T, Kernel> weights(t.at, i, before);
+      const StencilWeights<T, Kernel, register_bytes> weights(t.at, i, before);
       // Even and odd rows apart: each sum waits for its last term.
       Velocities u[2]{}, v[2]{}, w[2]{};
       for (int m = 0; m < points; ++m, at += t.stride[2]) {
@@ -180,9 +194,9 @@ struct InterpolateSurface {
           from_u += t.stride[1], from_v += t.stride[1], from_w += t.stride[1];
         }
       }
-      t.velocity[0][i] = sum(((u[0] + u[1]) * weights.along_x).moved_back(before).folded());
-      t.velocity[1][i] = sum(((v[0] + v[1]) * weights.along_x).moved_back(before).folded());
-      t.velocity[2][i] = sum(((w[0] + w[1]) * weights.along_x).moved_back(before).folded());
+      t.velocity[0][i] = sum(((u[0] + u[1]) * weights.along_x).folded(before));
+      t.velocity[1][i] = sum(((v[0] + v[1]) * weights.along_x).folded(before));
+      t.velocity[2][i] = sum(((w[0] + w[1]) * weights.along_x).folded(before));
     }
   }
 
