@@ -18,29 +18,55 @@ struct LineCrossing {
   bool leaves;  ///< going towards larger x the line leaves the surface here; else it enters
 };
 
-/// Where the line at p goes through a triangle, if it does. Of two triangles with a common edge exactly one has a line
-/// through that edge, so that a line enters a closed surface as often as it leaves it.
-inline std::optional<LineCrossing> line_crossing(const Vec<3>& a, const Vec<3>& b, const Vec<3>& c, LinePlace p) {
-  // Twice the area of the triangle (from, to, q), positive where they run counter-clockwise. The same number but for
-  // its sign where from and to change places.
-  const auto twice_area = [](LinePlace from, LinePlace to, LinePlace q) {
-    const bool swapped = to.y < from.y || (to.y == from.y && to.z < from.z);
-    if (swapped) std::swap(from, to);
-    const double area = (to.y - from.y) * (q.z - from.z) - (to.z - from.z) * (q.y - from.y);
-    return swapped ? -area : area;
+/// A triangle as lines parallel to x see it, of which many may be asked for.
+class LinesThroughTriangle {
+ public:
+  LinesThroughTriangle(const Vec<3>& a, const Vec<3>& b, const Vec<3>& c) : x_{a.x(), b.x(), c.x()} {
+    const LinePlace pa{a.y(), a.z()}, pb{b.y(), b.z()}, pc{c.y(), c.z()};
+    edge_[0] = Edge(pb, pc), edge_[1] = Edge(pc, pa), edge_[2] = Edge(pa, pb);
+    whole_ = edge_[2].twice_area(pc);
+    // A point on an edge lies beside it for one of its two directions.
+    const LinePlace corner[] = {pa, pb, pc};
+    for (int k = 0; k < 3; ++k) {
+      LinePlace from = corner[(k + 1) % 3], to = corner[(k + 2) % 3];
+      if (whole_ < 0) std::swap(from, to);
+      holds_its_points_[k] = to.z > from.z || (to.z == from.z && to.y < from.y);
+    }
+  }
+  /// Where the line at p goes through it, if it does. Of two triangles with a common edge exactly one has a line
+  /// through that edge, so that a line enters a closed surface as often as it leaves it.
+  [[nodiscard]] std::optional<LineCrossing> crossing(LinePlace p) const {
+    if (whole_ == 0) return std::nullopt;
+    double in[3];
+    for (int k = 0; k < 3; ++k) {
+      in[k] = edge_[k].twice_area(p);
+      const double area = whole_ < 0 ? -in[k] : in[k];
+      if (!(area > 0 || (area == 0 && holds_its_points_[k]))) return std::nullopt;
+    }
+    // Seen from larger x the triangles that a line leaves through run counter-clockwise.
+    return LineCrossing{(in[0] * x_[0] + in[1] * x_[1] + in[2] * x_[2]) / (in[0] + in[1] + in[2]), whole_ > 0};
+  }
+
+ private:
+  /// Twice the area of the triangle (from, to, q), positive where they run counter-clockwise. The same number but for
+  /// its sign where from and to change places.
+  struct Edge {
+    LinePlace from, along;
+    bool swapped;
+    Edge() = default;
+    Edge(LinePlace a, LinePlace b) : swapped(b.y < a.y || (b.y == a.y && b.z < a.z)) {
+      if (swapped) std::swap(a, b);
+      from = a, along = {b.y - a.y, b.z - a.z};
+    }
+    [[nodiscard]] double twice_area(LinePlace q) const {
+      const double area = along.y * (q.z - from.z) - along.z * (q.y - from.y);
+      return swapped ? -area : area;
+    }
   };
-  const LinePlace pa{a.y(), a.z()}, pb{b.y(), b.z()}, pc{c.y(), c.z()};
-  const double whole = twice_area(pa, pb, pc);
-  if (whole == 0) return std::nullopt;
-  // A point on an edge lies beside it for one of its two directions.
-  const auto beside = [&](double area, LinePlace from, LinePlace to) {
-    if (whole < 0) area = -area, std::swap(from, to);
-    return area > 0 || (area == 0 && (to.z > from.z || (to.z == from.z && to.y < from.y)));
-  };
-  const double in_a = twice_area(pb, pc, p), in_b = twice_area(pc, pa, p), in_c = twice_area(pa, pb, p);
-  if (!beside(in_a, pb, pc) || !beside(in_b, pc, pa) || !beside(in_c, pa, pb)) return std::nullopt;
-  // Seen from larger x the triangles that a line leaves through run counter-clockwise.
-  return LineCrossing{(in_a * a.x() + in_b * b.x() + in_c * c.x()) / (in_a + in_b + in_c), whole > 0};
-}
+  double x_[3];
+  Edge edge_[3];  // across from each corner
+  double whole_;
+  bool holds_its_points_[3];
+};
 
 }  // namespace rouleau::core

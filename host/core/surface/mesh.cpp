@@ -144,7 +144,7 @@ double surface_area(const Mesh& mesh, Nodes nodes) {
 bool encloses(const Mesh& mesh, Nodes nodes, const Vec<3>& point) {
   int inside = 0;
   for (const auto& [i, j, k] : mesh.triangles()) {
-    const auto crossing = line_crossing(nodes[i], nodes[j], nodes[k], {point.y(), point.z()});
+    const auto crossing = LinesThroughTriangle(nodes[i], nodes[j], nodes[k]).crossing({point.y(), point.z()});
     if (crossing && crossing->x > point.x()) inside += crossing->leaves ? 1 : -1;
   }
   return inside > 0;
