@@ -154,13 +154,13 @@ void ViscosityField<T, D>::update(Worker worker, const Cells<D>& cells, Field<T,
     collect_changes(cells, own);
     set_rates(cells, own, relaxation_rate);
   }
-  mask.clear(own.begin, own.end);
-  for (const int c : cells.known_cells()) {
-    if (!cells.reaches(c)) continue;
-    for_rows(reach_[c].reached, own, [&](int row, Interval columns, int) {
-      if (columns.begin < columns.end) mask.mark(row, columns.begin, columns.end);
-    });
-  }
+  mask.renew(own.begin, own.end, [&](auto mark) {
+    for (const int c : cells.known_cells()) {
+      if (cells.reaches(c))
+        for_rows(reach_[c].reached, own,
+                 [&](int row, Interval columns, int) { mark(row, columns.begin, columns.end); });
+    }
+  });
 }
 
 template <class T, int D>

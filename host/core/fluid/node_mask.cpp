@@ -13,25 +13,15 @@ NodeMask::NodeMask(const Domain<1>& along_x, int rows)
       bits_(static_cast<std::size_t>(words_) * ny_, 0),
       spans_(static_cast<std::size_t>(ny_), {MaskSpan{0, nx_, false}}) {}
 
-void NodeMask::clear(int first_row, int end_row) {
-  std::fill(bits_.begin() + static_cast<std::ptrdiff_t>(words_) * first_row,
-            bits_.begin() + static_cast<std::ptrdiff_t>(words_) * end_row, 0);
-  if (fluid_.empty()) {
-    for (int y = first_row; y < end_row; ++y) spans_[y].assign(1, {0, nx_, false});
-  } else {
-    for (int y = first_row; y < end_row; ++y) list_spans(y);
-  }
-}
-
-void NodeMask::mark(int y, int begin, int end) {
-  if (y < 0 || y >= ny_ || begin >= end) return;
+bool NodeMask::add_marks(int y, int begin, int end) {
+  if (y < 0 || y >= ny_ || begin >= end) return false;
   std::uint64_t* row = bits_.data() + static_cast<std::size_t>(words_) * y;
   const int size = along_x_.size[0];
   if (!along_x_.periodic[0]) begin = std::clamp(begin, 0, size), end = std::clamp(end, begin, size);
   const int first = end - begin < size ? along_x_.wrapped(0, begin) : 0, last = first + std::min(end - begin, size);
   if (first < last) mark_nodes(row, first, std::min(last, size));
   if (last > size) mark_nodes(row, 0, last - size);
-  list_spans(y);
+  return true;
 }
 
 void NodeMask::mark_nodes(std::uint64_t* row, int begin, int end) {

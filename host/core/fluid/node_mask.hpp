@@ -32,11 +32,19 @@ class NodeMask {
     if (solid != nullptr) keep_out(domain, *solid);
   }
 
-  /// Takes the marks of rows [first_row, end_row) away.
-  void clear(int first_row, int end_row);
   /// Marks the nodes of row y of the block (Lattice::row) that are images of columns [begin, end) of the lattice; rows
   /// outside the block are left out.
-  void mark(int y, int begin, int end);
+  void mark(int y, int begin, int end) {
+    if (add_marks(y, begin, end)) list_spans(y);
+  }
+  /// The same for rows [first_row, end_row), whose marks are those that `add` gives to function(y, begin, end).
+  template <class Add>
+  void renew(int first_row, int end_row, Add add) {
+    const auto first = bits_.begin() + static_cast<std::ptrdiff_t>(words_) * first_row;
+    std::fill(first, first + static_cast<std::ptrdiff_t>(words_) * (end_row - first_row), 0);
+    add([this](int y, int begin, int end) { add_marks(y, begin, end); });
+    for (int y = first_row; y < end_row; ++y) list_spans(y);
+  }
 
   /// Calls function(MaskSpan) for the spans of row y, left to right, covering [0, nx) exactly, but for solid nodes. A
   /// row of nothing else has an empty span.
@@ -94,6 +102,8 @@ class NodeMask {
   /// The bit of node x of the block. Bits stand for the same nodes of the lattice whatever the block, since who
   /// computes with what is active must come to the same numbers in all blocks.
   [[nodiscard]] int bit_of(int x) const { return (x + first_) / nodes_per_bit; }
+  /// Whether there were any to mark; spans are as before.
+  bool add_marks(int y, int begin, int end);
   /// Nodes [begin, end) of the lattice.
   void mark_nodes(std::uint64_t* row, int begin, int end);
   template <int D>
