@@ -14,7 +14,7 @@ using Matrix = Eigen::SparseMatrix<double>;
 
 struct SolveTask {
   int count;
-  const int *first, *row;
+  const int *first, *place;
   const double *entry, *inverse;
   double* rows;
 };
@@ -24,22 +24,24 @@ struct Solve {
   ROULEAU_ALWAYS_INLINE static void run(const SolveTask* task) {
     using Four = Pack<double, 4>;
     const SolveTask t = *task;
+    // A pack that is written like this is read at once; Pack(number) takes an addition more.
+    const auto all = [](double number) { return Four(Four::Vector{number, number, number, number}); };
     for (int j = 0; j < t.count; ++j) {
       const Four of_column = Four::load(t.rows + 4 * j);
       for (int k = t.first[j]; k < t.first[j + 1]; ++k) {
-        double* const row = t.rows + 4 * t.row[k];
-        (Four::load(row) - Four::broadcast(t.entry + k) * of_column).store(row);
+        double* const row = t.rows + t.place[k];
+        (Four::load(row) - all(t.entry[k]) * of_column).store(row);
       }
     }
     for (int j = t.count; j-- > 0;) {
       // Two sums take turns, since each waits for its last term.
-      Four one = Four::load(t.rows + 4 * j) * Four::broadcast(t.inverse + j), two = 0.0;
+      Four one = Four::load(t.rows + 4 * j) * all(t.inverse[j]), two = 0.0;
       int k = t.first[j];
       for (; k + 2 <= t.first[j + 1]; k += 2) {
-        one -= Four::broadcast(t.entry + k) * Four::load(t.rows + 4 * t.row[k]);
-        two -= Four::broadcast(t.entry + k + 1) * Four::load(t.rows + 4 * t.row[k + 1]);
+        one -= all(t.entry[k]) * Four::load(t.rows + t.place[k]);
+        two -= all(t.entry[k + 1]) * Four::load(t.rows + t.place[k + 1]);
       }
-      if (k < t.first[j + 1]) one -= Four::broadcast(t.entry + k) * Four::load(t.rows + 4 * t.row[k]);
+      if (k < t.first[j + 1]) one -= all(t.entry[k]) * Four::load(t.rows + t.place[k]);
       (one + two).store(t.rows + 4 * j);
     }
   }
@@ -60,7 +62,7 @@ MeshInverse::MeshInverse(const Matrix& matrix) {
     first_.push_back(entries());
     for (Matrix::InnerIterator below(lower, i); below; ++below) {
       if (below.row() == i) continue;
-      row_.push_back(static_cast<int>(below.row()));
+      row_.push_back(4 * static_cast<int>(below.row()));
       entry_.push_back(below.value());
     }
   }

@@ -22,7 +22,7 @@ class MeshInverse {
  private:
   // L without its diagonal of ones, column by column.
   std::vector<int> place_;
-  std::vector<int> first_, row_;  // entries [first_[j], first_[j + 1]) belong to column j
+  std::vector<int> first_, row_;  // entries [first_[j], first_[j + 1]) belong to column j; where rows of vectors begin
   std::vector<double> entry_;
   std::vector<double> inverse_;  // 1/D
 };
