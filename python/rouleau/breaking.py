@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Mapping, NamedTuple
 
 from .errors import Error, Fault
 from .running import ProgressLike
-from .scenes import SceneLike, as_json, quantity_text, text_of, whole
+from .scenes import SceneLike, as_json, pointer_of, quantity_text, text_of, whole
 from .sweeping import Job, number_and_unit, run_all
 
 if TYPE_CHECKING:
@@ -63,6 +63,8 @@ def break_up(scene: SceneLike, *, most: Any = "400 1/s", ramp: Any = "1 s", stra
     if not (lasts > 0 and fastest > 0 and strain > 0 and 0 < tolerance < 1):
         raise Error(Fault(f"most is {most!r}, ramp {ramp!r}, strain {strain!r} and tolerance {tolerance!r}",
                           "give a rate such as \"400 1/s\", a time such as \"1 s\", and numbers above 0"))
+    if named := [key for key in changes if pointer_of(key).startswith("/stages")]:
+        raise Error(Fault(f"{named[0]} would be lost: stages are made anew", "change the stages in the scene itself"))
     rows: list[dict[str, Any]] = []
     together = 0
     adhesion = math.nan

@@ -82,13 +82,15 @@ class BreakUp(Case):
         diverged.status = "diverged"
         with self.assertRaisesRegex(rouleau.Error, "ended as diverged"):
             self.found(diverged)
+        with self.assertRaisesRegex(rouleau.Error, "stages.0.duration would be lost"):
+            self.found(Fake(lambda _: True), **{"stages.0.duration": "1 s"})
         with self.assertRaisesRegex(rouleau.Error, "tolerance 2"):
             self.found(Fake(lambda _: True), tolerance=2)
 
     def test_the_program_takes_its_ramp(self):
         with self.assertRaisesRegex(rouleau.Error, "no aggregate parted up to 5 1/s") as refused:
             rouleau.break_up(SOURCE / "scenes/blood/pair-2d.json", most="5 1/s", ramp="0.2 s", workers=1, out=self.path / "pair",
-                             progress=False, **{"domain.nodes": [64, 48], "/stages/0/duration": "0.1 s"})
+                             progress=False, **{"domain.nodes": [64, 48]})
         run = rouleau.open(refused.exception.faults[0].file)
         self.assertEqual(run.stages, ["aggregate", "shear"])
         self.assertAlmostEqual(run.series["shear_rate_1_per_s"].iloc[-1], 5, delta=0.05)
