@@ -153,7 +153,7 @@ void add_series(std::vector<Quantity>& all, const files::StoredTable& table, std
 /// Whether a mean of a stage is a result, rather than what says whether another one is.
 bool is_result(const std::string& column, const Json& means, bool attracting) {
   if (column.starts_with("aggregate_size") || column.starts_with("contact")) return attracting;
-  if (!column.starts_with("cell_free_layer")) return true;
+  if (!column.starts_with("cell_free_layer")) return column.find("normal_stress") == std::string::npos;
   const Json& empty = means.at("cell_free_layer_empty");
   return column != "cell_free_layer_empty" && empty.is_object() &&
          empty.at("mean").get<double>() < observe::most_empty_columns;

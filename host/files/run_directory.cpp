@@ -12,6 +12,7 @@
 #include "frames.hpp"
 #include "json/document.hpp"
 #include "observe/cell_traffic.hpp"
+#include "profiles.hpp"
 #include "tables.hpp"
 #include "verify.hpp"
 
@@ -19,9 +20,19 @@ namespace rouleau::files {
 
 namespace {
 
-constexpr std::array<std::string_view, 12> run_files{
-    "aggregate_sizes.csv", "cells.csv",   "aggregates.csv", "series.csv",    "frames.h5", "frames.xmf",
-    "summary.json",        "report.html", "scene.json",     "checkpoint.h5", "log.jsonl", "checkpoint-previous.h5"};
+constexpr std::array<std::string_view, 13> run_files{profiles_file,
+                                                     "aggregate_sizes.csv",
+                                                     "cells.csv",
+                                                     "aggregates.csv",
+                                                     "series.csv",
+                                                     "frames.h5",
+                                                     "frames.xmf",
+                                                     "summary.json",
+                                                     "report.html",
+                                                     "scene.json",
+                                                     "checkpoint.h5",
+                                                     "log.jsonl",
+                                                     "checkpoint-previous.h5"};
 
 /// Left by a run that was killed while it wrote a file.
 bool is_partial(const std::string& name) { return name.starts_with('.') && name.ends_with(".partial"); }
@@ -165,7 +176,8 @@ void RunDirectory::go_back(const DirectoryMark& mark) {
   Tables::require(directory_, mark.tables);
   files_->frames.emplace(directory_ / "frames.h5", scene_, mark.frames);
   remove_files(directory_, [](const std::string& name) {
-    return is_partial(name) || name == "summary.json" || name == "report.html" || name == "frames.xmf";
+    return is_partial(name) || name == profiles_file || name == "summary.json" || name == "report.html" ||
+           name == "frames.xmf";
   });
   files_->tables.emplace(directory_, observe::kind_of(scene_), mark.tables);
   files_->log->go_on(mark.log_s);
@@ -187,7 +199,7 @@ void RunDirectory::log(const std::string& event, const nlohmann::json& details) 
   files_->log->write(event, details);
 }
 
-void RunDirectory::finish(const nlohmann::json& summary) {
+void RunDirectory::finish(const nlohmann::json& summary, const observe::ProfileHistory& profiles) {
   if (!files_) throw std::logic_error("RunDirectory::finish called twice");
   const auto files = std::move(files_);
   files->tables->close();
@@ -198,6 +210,7 @@ void RunDirectory::finish(const nlohmann::json& summary) {
     names = files->frames->names();
   }
   files->log->close();
+  if (scene_.output.profiles) write_file(directory_ / profiles_file, profiles_csv(profiles, scene_), kept_);
   for (const std::string_view name : run_files) {
     const bool made_of_others = name == "summary.json" || name == "report.html" || name == "checkpoint-previous.h5";
     const bool named = name == "frames.h5";

@@ -12,6 +12,7 @@
 #include "file.hpp"
 #include "frame_segments.hpp"
 #include "json/json.hpp"
+#include "observe/profiles.hpp"
 #include "observe/snapshot.hpp"
 #include "scene/scene.hpp"
 #include "tables.hpp"
@@ -98,8 +99,9 @@ class RunDirectory {
   void write(const observe::Snapshot& snapshot);
   /// One line of log.jsonl: {"wall_s":..., "event":..., ...details}.
   void log(const std::string& event, const nlohmann::json& details = nlohmann::json::object());
-  /// Closes the data files, writes frames.xmf and, last, summary.json. Nothing may be written after it.
-  void finish(const nlohmann::json& summary);
+  /// Closes the data files, writes frames.xmf, profiles.csv if the scene wants it and, last, summary.json. Nothing may
+  /// be written after it.
+  void finish(const nlohmann::json& summary, const observe::ProfileHistory& profiles = {});
 
   [[nodiscard]] const std::filesystem::path& path() const { return directory_; }
 

@@ -15,17 +15,18 @@ namespace rouleau::observe {
 class AggregateHistory {
  public:
   /// Adds an event if aggregates of two cells or more or contacts across the periodic border differ from those before.
-  /// Of many cells (most_cells_remembered) only the first and the last event keep their members, and there are no lives.
+  /// Of many cells (most_cells_remembered) only the first and the last event keep their members; they have no
+  /// lives.
   void follow(const Snapshot& snapshot);
   [[nodiscard]] const std::vector<AggregateEvent>& events() const { return events_; }
   /// Aggregates at the last snapshot, single cells included.
   [[nodiscard]] int count() const { return count_; }
   /// Those of two cells or more that are joined, where cells attract each other.
   [[nodiscard]] int rouleaux() const;
-  /// Of each stage {stage, sizes}, of each number of joined cells {cells, seen, broken, grown, time_s, break_up_rate_per_s,
-  /// standard_error_per_s, mean_lifetime_s}: aggregates with the same members, from the first output with them to the
-  /// first without. Broken: their members are not all in one; grown: they are, with others. Those of which a cell has
-  /// left the domain, or that are there at the end, count with their time alone.
+  /// Of each stage {stage, sizes}, of each number of joined cells {cells, seen, broken, grown, time_s,
+  /// break_up_rate_per_s, standard_error_per_s, mean_lifetime_s}: aggregates with the same members, from the first
+  /// output with them to the first without. Broken: their members are not all in one; grown: they are, with others.
+  /// Those of which a cell has left the domain, or that are there at the end, count with their time alone.
   [[nodiscard]] nlohmann::json lifetimes() const;
   NLOHMANN_DEFINE_TYPE_INTRUSIVE_WITH_DEFAULT(AggregateHistory, events_, images_, count_, lives_, last_, last_time_)
 

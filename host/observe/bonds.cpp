@@ -1,6 +1,7 @@
 #include "bonds.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -9,6 +10,44 @@
 #include "rheology.hpp"
 
 namespace rouleau::observe {
+
+namespace {
+
+void count_aggregates(const Aggregates& aggregates, Snapshot& snapshot) {
+  snapshot.aggregate_count = aggregates.count;
+  snapshot.aggregate_sizes = aggregate_sizes(aggregates.label);
+  snapshot.aggregate_size_number_mean = number_mean(snapshot.aggregate_sizes);
+  snapshot.aggregate_size_weight_mean = weight_mean(snapshot.aggregate_sizes);
+}
+
+/// What contacts there are, of whichever rank's cells.
+template <int D>
+ContactSnapshot in_si(const CellContact& c, double length) {
+  constexpr std::array of{&ContactSnapshot::contact_length, &ContactSnapshot::contact_area};
+  ContactSnapshot s{c.cell_a, c.cell_b, {c.image.x, c.image.y, c.image.z}, c.gap * length};
+  double measure = c.contact_length;
+  for (int k = 1; k < D; ++k) measure *= length;
+  s.*of[D - 2] = measure;
+  return s;
+}
+
+}  // namespace
+
+template <int D>
+void describe_contacts(const std::vector<CellContact>& contacts, const Aggregates& aggregates, double length,
+                       Snapshot& snapshot) {
+  count_aggregates(aggregates, snapshot);
+  const auto count = static_cast<double>(contacts.size());
+  snapshot.contacts_per_cell = 2 * count / static_cast<double>(aggregates.cells.size());
+  if (!contacts.empty()) snapshot.contact_gap = 0;
+  for (const CellContact& contact : contacts) {
+    snapshot.contacts.push_back(in_si<D>(contact, length));
+    snapshot.contact_gap += contact.gap * length / count;
+  }
+}
+
+template void describe_contacts<2>(const std::vector<CellContact>&, const Aggregates&, double, Snapshot&);
+template void describe_contacts<3>(const std::vector<CellContact>&, const Aggregates&, double, Snapshot&);
 
 void find_bonds(Snapshot& snapshot, const std::vector<core::PairEnergy>& halves, const scene::Attractions& attracting,
                 double least, double unit) {
@@ -51,5 +90,29 @@ void find_bonds(Snapshot& snapshot, const std::vector<core::PairEnergy>& halves,
   snapshot.bonded_size_number_mean = number_mean(snapshot.bonded_sizes);
   snapshot.bonded_size_weight_mean = weight_mean(snapshot.bonded_sizes);
 }
+
+template <int D>
+void observe_interactions(core::AnySolver<D>& solver, const scene::Scene& scene, const scene::Attractions& attracting,
+                          const units::LatticeUnits& units, Snapshot& snapshot) {
+  auto& tasks = *solver.cell_tasks();
+  // In layers a cell's share in the stress is not a matter of its membrane alone.
+  snapshot.particle_stress = std::nan("");
+  if (scene.fluid.layers.empty()) {
+    const ParticleStress stress = particle_stress(solver.cells(), scene, solver.setup().viscosity(), solver.ranks(),
+                                                  [&](int c) { return tasks.force_across_images(c); });
+    snapshot.particle_stress = units.to_si(stress.xy, units::dimension::pressure);
+    snapshot.first_normal_stress = units.to_si(stress.first, units::dimension::pressure);
+    snapshot.second_normal_stress = units.to_si(stress.second, units::dimension::pressure);
+  }
+  if (attracting.empty()) return;
+  const auto halves = core::to_first(solver.ranks(), tasks.pair_energies());
+  const double joule = units.to_si(1, units::dimension::energy_per_depth) * std::pow(units.length, D - 2);
+  if (solver.ranks().first()) find_bonds(snapshot, halves, attracting, scene.output.bond_share, joule);
+}
+
+template void observe_interactions(core::AnySolver<2>&, const scene::Scene&, const scene::Attractions&,
+                                   const units::LatticeUnits&, Snapshot&);
+template void observe_interactions(core::AnySolver<3>&, const scene::Scene&, const scene::Attractions&,
+                                   const units::LatticeUnits&, Snapshot&);
 
 }  // namespace rouleau::observe

@@ -170,6 +170,12 @@ constexpr Observable series_columns[] = {
      "xy stress that the cells add: all forces on membranes, between cells too, and viscosity contrast, "
      "per area of the domain",
      output<&Snapshot::particle_stress>, "Particle stress xy"},
+    marked<&Observable::has_means>(
+        {"first_normal_stress", "Pa",
+         "first normal stress difference that the cells add, xx less yy: positive where they pull along x",
+         output<&Snapshot::first_normal_stress>}),
+    marked<&Observable::in_space>(marked<&Observable::has_means>(
+        {"second_normal_stress", "Pa", "the second one, yy less zz", output<&Snapshot::second_normal_stress>})),
     {"mach_max", "", "largest Mach number of the lattice flow at this instant", output<&Snapshot::mach_max>,
      "Largest Mach number"},
     {"area_drift_max", "", "largest relative change of a cell's area since the start, of all cells, at this instant",

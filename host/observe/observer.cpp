@@ -13,6 +13,7 @@
 #include "core/fluid/relaxation.hpp"
 #include "energy.hpp"
 #include "fields.hpp"
+#include "profiles.hpp"
 #include "rheology.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/lattice.hpp"
@@ -24,24 +25,6 @@ namespace {
 /// The value nearest to `previous` that differs from `angle` by a multiple of `period`.
 double continued(double angle, double previous, double period) {
   return angle + period * std::round((previous - angle) / period);
-}
-
-void count_aggregates(const Aggregates& aggregates, Snapshot& snapshot) {
-  snapshot.aggregate_count = aggregates.count;
-  snapshot.aggregate_sizes = aggregate_sizes(aggregates.label);
-  snapshot.aggregate_size_number_mean = number_mean(snapshot.aggregate_sizes);
-  snapshot.aggregate_size_weight_mean = weight_mean(snapshot.aggregate_sizes);
-}
-
-/// What contacts there are, of whichever rank's cells.
-template <int D>
-ContactSnapshot in_si(const CellContact& c, double length) {
-  constexpr std::array of{&ContactSnapshot::contact_length, &ContactSnapshot::contact_area};
-  ContactSnapshot s{c.cell_a, c.cell_b, {c.image.x, c.image.y, c.image.z}, c.gap * length};
-  double measure = c.contact_length;
-  for (int k = 1; k < D; ++k) measure *= length;
-  s.*of[D - 2] = measure;
-  return s;
 }
 
 }  // namespace
@@ -129,7 +112,9 @@ template <int D>
 core::FluidMeasures<D> Observer::measure_fluid(core::AnyFluid<D>& fluid, const scene::StageSetting& setting,
                                                bool for_output) const {
   fluid.settle();
-  return fluid.measure({.energetics = for_output, .row_velocities = for_output && is_driven_channel(setting, *scene_)});
+  return fluid.measure(
+      {.energetics = for_output,
+       .row_velocities = for_output && (is_driven_channel(setting, *scene_) || scene_->output.profiles)});
 }
 
 template <int D>
@@ -169,12 +154,7 @@ void Observer::observe_cells(core::Surroundings<D>& around, const units::Lattice
   there.reserve(measures.size());
   for (const CellMeasures& m : measures) there.push_back(m.cell);
   const Aggregates aggregates = find_aggregates(std::move(there), contacts);
-  count_aggregates(aggregates, snapshot);
-  for (const CellContact& contact : contacts) snapshot.contacts.push_back(in_si<D>(contact, length));
-  const auto sides = static_cast<double>(2 * contacts.size());
-  snapshot.contacts_per_cell = sides / static_cast<double>(measures.size());
-  if (sides > 0) snapshot.contact_gap = 0;
-  for (const CellContact& contact : contacts) snapshot.contact_gap += 2 * contact.gap * length / sides;
+  describe_contacts<D>(contacts, aggregates, length, snapshot);
   std::vector<Eigen::Vector2d> centers;  // as seen along z
   snapshot.cells.reserve(measures.size());
   for (const CellMeasures& m : measures) {
@@ -299,23 +279,17 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
     snapshot.pressure_gradient =
         units.to_si(fluid.setting().body_force[0], units::dimension::force_density) - scene_->fluid.body_force.x();
   }
+  if (scene_->output.profiles) {
+    for (const double velocity : velocity_profile(measured.row_velocities, *scene_))
+      snapshot.velocity_profile.push_back(units.to_si(velocity, units::dimension::velocity));
+    snapshot.hematocrit_profile = hematocrit_profile(cells, *scene_, solver.ranks());
+  }
   if (!cells.cells.empty()) {
     const core::Ranks<D>& ranks = solver.ranks();
     if (has_walls) observe_layers(cells, ranks, units.length, snapshot);
-    // In layers a cell's share in the stress is not a matter of its membrane alone.
-    snapshot.particle_stress =
-        scene_->fluid.layers.empty()
-            ? units.to_si(particle_stress(cells, *scene_, viscosity, ranks,
-                                          [&](int c) { return solver.cell_tasks()->force_across_images(c); }),
-                          units::dimension::pressure)
-            : std::numeric_limits<double>::quiet_NaN();
     core::Surroundings<D> around = solver.cell_tasks()->surroundings();
     observe_cells(around, units, snapshot);
-    if (!attracting_.empty()) {
-      const auto halves = core::to_first(ranks, solver.cell_tasks()->pair_energies());
-      const double joule = units.to_si(1, units::dimension::energy_per_depth) * (D == 3 ? units.length : 1);
-      if (ranks.first()) find_bonds(snapshot, halves, attracting_, scene_->output.bond_share, joule);
-    }
+    observe_interactions(solver, *scene_, attracting_, units, snapshot);
     snapshot.area_drift_max = follow_area(cells, ranks);
     snapshot.area_leakage_max = area_leakage(cells, ranks);
     snapshot.membranes = observe_membranes(solver, units);

@@ -1,7 +1,9 @@
 #include "rheology.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "cell_measures.hpp"
 #include "cell_sums.hpp"
@@ -13,14 +15,36 @@ namespace rouleau::observe {
 
 namespace {
 
-/// -F_x y of a cell's nodes, from the middle of the box, and of what acts on them through images of other cells.
-double stress_of_forces(const core::CellNodes& nodes, int cell, const scene::Scene& scene,
+using Stress = std::array<double, 4>;  // xy, xx, yy, zz
+
+/// -F_x y, -F_x x, -F_y y and -F_z z of a cell's nodes, from the middle of the box, and of what acts on them through
+/// images of other cells.
+Stress stress_of_forces(const core::CellNodes& nodes, int cell, const scene::Scene& scene,
                         const ForceAcrossImages& across_images) {
-  const double height = scene.domain.nodes[1], middle = (height - 1) / 2;
-  double stress = across_images ? height * across_images(cell) : 0;
+  Stress stress{};
+  if (across_images) stress = across_images(cell);
+  const auto& box = scene.domain.nodes;
+  const std::size_t axes = box.size();
+  stress[0] *= box[1];
+  for (std::size_t k = 0; k < axes; ++k) stress[k + 1] *= box[k];
   const core::CellRange& range = nodes.cells[cell];
-  for (int i = range.first; i < range.end(); ++i) stress -= nodes.force[0][i] * (nodes.position[1][i] - middle);
+  for (int i = range.first; i < range.end(); ++i) {
+    stress[0] -= nodes.force[0][i] * (nodes.position[1][i] - (box[1] - 1) / 2.0);
+    for (std::size_t k = 0; k < axes; ++k)
+      stress[k + 1] -= nodes.force[k][i] * (nodes.position[k][i] - (box[k] - 1) / 2.0);
+  }
   return stress;
+}
+
+/// Of a piece of membrane between two viscosities that differ by `excess`: area times outward normal, and velocity.
+void add_contrast(Stress& stress, double excess, const std::array<double, 3>& normal,
+                  const std::array<double, 3>& velocity) {
+  stress[0] += excess * (velocity[0] * normal[1] + velocity[1] * normal[0]);
+  for (std::size_t k = 0; k < 3; ++k) stress[k + 1] += 2 * excess * velocity[k] * normal[k];
+}
+
+ParticleStress per_content(const Stress& all, double content) {
+  return {all[0] / content, (all[1] - all[2]) / content, (all[2] - all[3]) / content};
 }
 
 /// Of the fluid, in volumes or areas of a node.
@@ -106,28 +130,30 @@ double weight_mean(const std::map<int, int>& sizes) {
   return squares / cells;
 }
 
-double particle_stress(const core::Membranes& m, const scene::Scene& scene, double viscosity,
-                       const core::Ranks<2>& ranks, const ForceAcrossImages& across_images) {
-  const double all = sum_over(m, ranks, [&](int number) {
-    double stress = stress_of_forces(m, number, scene, across_images);
+ParticleStress particle_stress(const core::Membranes& m, const scene::Scene& scene, double viscosity,
+                               const core::Ranks<2>& ranks, const ForceAcrossImages& across_images) {
+  const Stress all = sums_over<4>(m, ranks, [&](int number) {
+    Stress stress = stress_of_forces(m, number, scene, across_images);
     const core::CellRange& cell = m.cells[number];
     const double ratio = scene.cell_types[cell.type].interior_viscosity / scene.fluid.viscosity;
     for (int i = cell.first; i < cell.end(); ++i) {
       const auto k = static_cast<std::size_t>(i), n = static_cast<std::size_t>(cell.next(i));
       // Outward normal times length of segment i, nodes counter-clockwise.
-      const double nx = m.position[1][n] - m.position[1][k], ny = m.position[0][k] - m.position[0][n];
-      const double ux = (m.velocity[0][k] + m.velocity[0][n]) / 2, uy = (m.velocity[1][k] + m.velocity[1][n]) / 2;
-      stress += viscosity * (ratio - 1) * (ux * ny + uy * nx);
+      add_contrast(stress, viscosity * (ratio - 1),
+                   {m.position[1][n] - m.position[1][k], m.position[0][k] - m.position[0][n], 0},
+                   {(m.velocity[0][k] + m.velocity[0][n]) / 2, (m.velocity[1][k] + m.velocity[1][n]) / 2, 0});
     }
     return stress;
   });
-  return all / fluid_content(scene.domain);
+  ParticleStress stress = per_content(all, fluid_content(scene.domain));
+  stress.second = std::numeric_limits<double>::quiet_NaN();
+  return stress;
 }
 
-double particle_stress(const core::Surfaces& s, const scene::Scene& scene, double viscosity,
-                       const core::Ranks<3>& ranks, const ForceAcrossImages& across_images) {
-  const double all = sum_over(s, ranks, [&](int c) {
-    double stress = stress_of_forces(s, c, scene, across_images);
+ParticleStress particle_stress(const core::Surfaces& s, const scene::Scene& scene, double viscosity,
+                               const core::Ranks<3>& ranks, const ForceAcrossImages& across_images) {
+  const Stress all = sums_over<4>(s, ranks, [&](int c) {
+    Stress stress = stress_of_forces(s, c, scene, across_images);
     const core::CellRange& cell = s.cells[c];
     const core::Mesh& mesh = s.type_of(c).mesh;
     const double ratio = scene.cell_types[cell.type].interior_viscosity / scene.fluid.viscosity;
@@ -135,15 +161,15 @@ double particle_stress(const core::Surfaces& s, const scene::Scene& scene, doubl
     const std::vector<core::Vec<3>> twice_area = core::area_vectors(mesh, s.nodes(c));
     std::size_t t = 0;
     for (const auto& corners : mesh.triangles()) {
-      double ux = 0, uy = 0;
+      std::array<double, 3> velocity{};
       for (const int node : corners)
-        ux += s.velocity[0][cell.first + node] / 3, uy += s.velocity[1][cell.first + node] / 3;
-      stress += viscosity * (ratio - 1) * (ux * twice_area[t].y() + uy * twice_area[t].x()) / 2;
-      ++t;
+        for (std::size_t k = 0; k < 3; ++k) velocity[k] += s.velocity[k][cell.first + node] / 3;
+      const core::Vec<3>& normal = twice_area[t++];
+      add_contrast(stress, viscosity * (ratio - 1) / 2, {normal.x(), normal.y(), normal.z()}, velocity);
     }
     return stress;
   });
-  return all / fluid_content(scene.domain);
+  return per_content(all, fluid_content(scene.domain));
 }
 
 }  // namespace rouleau::observe

@@ -1,6 +1,7 @@
 // Observables of blood rheology at one instant: flow rate, apparent viscosity, particle stress, sizes of aggregates.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <vector>
@@ -15,19 +16,24 @@
 
 namespace rouleau::observe {
 
-/// Of a cell: what its interactions say (Interactions::force_across_images). None: nothing acts through images across
-/// y.
-using ForceAcrossImages = std::function<double(int cell)>;
+/// Of a cell: what its interactions say (Interactions::force_across_images). None: nothing acts through images.
+using ForceAcrossImages = std::function<std::array<double, 4>(int cell)>;
 
-/// Stress that the cells add to the suspension, xy component per area of the domain, lattice units: all forces on their
+/// A component of the stress that cells add, and its normal stress differences: xx less yy, and yy less zz, which in
+/// two dimensions is NaN. Like the component they are positive where the suspension pulls, along x more than along y.
+struct ParticleStress {
+  double xy, first, second;
+};
+
+/// Stress that the cells add to the suspension, per area of the domain, lattice units: all forces on their
 /// membranes, by which cells act on each other, too, and viscosity contrast (Batchelor, J. Fluid Mech. 41, 1970;
 /// surface integral of u n + n u over the outline). `viscosity` is that of the suspending fluid; forces and velocities
 /// must be those of the present step. All ranks together, of all cells.
-double particle_stress(const core::Membranes& membranes, const scene::Scene& scene, double viscosity,
-                       const core::Ranks<2>& ranks = {}, const ForceAcrossImages& across_images = {});
+ParticleStress particle_stress(const core::Membranes& membranes, const scene::Scene& scene, double viscosity,
+                               const core::Ranks<2>& ranks = {}, const ForceAcrossImages& across_images = {});
 /// The same of surfaces, per volume of the domain.
-double particle_stress(const core::Surfaces& surfaces, const scene::Scene& scene, double viscosity,
-                       const core::Ranks<3>& ranks = {}, const ForceAcrossImages& across_images = {});
+ParticleStress particle_stress(const core::Surfaces& surfaces, const scene::Scene& scene, double viscosity,
+                               const core::Ranks<3>& ranks = {}, const ForceAcrossImages& across_images = {});
 
 /// Whether a force along x, or openings, drive this stage's fluid between walls at rest: a flow with a flow rate.
 bool is_driven_channel(const scene::StageSetting& setting, const scene::Scene& scene);

@@ -117,7 +117,7 @@ Json RheologyHistory::means(const StageHistory& stage) {
       if (i >= first) late.push_back(values.back());
     }
     const std::optional<double> mean = mean_of(time, values, middle);
-    if (!mean && (averaged()[k].at_openings || averaged()[k].of_interactions)) continue;
+    if (!mean && !averaged()[k].is_in(2)) continue;    // not there in every run
     Json& of_column = result[averaged()[k].column()];  // null
     if (!mean) continue;
     const auto count = static_cast<double>(late.size());

@@ -153,6 +153,9 @@ struct Snapshot {
   double cell_free_layer_lower = 0, cell_free_layer_upper = 0;       ///< m; NaN without walls or cells
   double cell_free_layer_empty = 0;  ///< share of the columns in which there is no cell; NaN as the layers
   double particle_stress = 0;        ///< xy, Pa: membranes and viscosity contrast, per area of the domain
+  double first_normal_stress = std::numeric_limits<double>::quiet_NaN(),
+         second_normal_stress = first_normal_stress;  ///< Pa, differences of the same, xx - yy and yy - zz
+  std::vector<double> velocity_profile = {}, hematocrit_profile = {};  ///< m/s, 1, in each bin; empty: not wanted
   double mach_max = 0;
   double area_drift_max = 0;  ///< relative
   double area_leakage_max =

@@ -253,8 +253,7 @@ std::optional<RecoveryRates> recovery_rates(const Models& models, const Facts& f
 scene::Attractions attracting_types(const Models& models, const std::vector<InteractionWell>& wells) {
   scene::Attractions attracting;
   const auto add = [&](std::array<std::string, 2> between, double depth) {
-    const auto is_cell = [](const std::string& name) { return name != scene::wall_name && name != scene::self_name; };
-    if (!is_cell(between[0]) || !is_cell(between[1])) return;
+    if (between[1] == scene::wall_name || between[1] == scene::self_name) return;
     std::sort(between.begin(), between.end());
     attracting[between] += depth;
   };
@@ -264,10 +263,9 @@ scene::Attractions attracting_types(const Models& models, const std::vector<Inte
     });
     if (described.well.attracts()) add(described.between, tells ? described.well.depth : std::nan(""));
   }
-  for (std::size_t i = 0; i < models.interactions.size(); ++i) {
-    const PlannedModel& model = models.interactions[i];
-    if (model.active() && model.remembers()) add(models.scene->names_of(models.scene->interactions[i]), std::nan(""));
-  }
+  for (std::size_t i = 0; i < models.interactions.size(); ++i)
+    if (const PlannedModel& model = models.interactions[i]; model.active() && model.remembers())
+      add(models.scene->names_of(models.scene->interactions[i]), std::nan(""));
   return attracting;
 }
 

@@ -201,12 +201,17 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index, const L
     if (!plan.interactions[i].active()) continue;
     const scene::Interaction& interaction = scene.interactions[i];
     const core::Potential& potential = made.interactions[i];
+    core::Course strength;
+    if (!stage.stage->strengths.empty()) {
+      const auto& [values, steps] = stage.stage->strengths[i];
+      strength = {values, steps, values.size() > 1 ? *stage.stage->duration / stage.units.time : 0};
+    }
     if (interaction.with_wall()) {
-      setup.wall_interactions.push_back({.type = interaction.between[0], .potential = potential});
+      setup.wall_interactions.push_back({interaction.between[0], potential, strength});
     } else if (interaction.with_self()) {
-      setup.self_interactions.push_back({.type = interaction.between[0], .potential = potential});
+      setup.self_interactions.push_back({interaction.between[0], potential, strength});
     } else {
-      setup.interactions.push_back({.between = interaction.between, .potential = potential});
+      setup.interactions.push_back({interaction.between, potential, strength});
     }
   }
   return setup;

@@ -278,6 +278,7 @@ void Checkpoints::write(const plan::Plan& plan, int threads, const RunState& sta
              {"solver", std::move(saved_solver)},
              {"directory", to_->mark()}};
   if (plan.scene->domain.openings) saved["traffic"] = state.traffic;
+  if (plan.scene->output.profiles) saved["profiles"] = state.profiles;
   writer_->state(saved);
   writer_->finish();
 }
@@ -303,6 +304,7 @@ Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, c
     complete_former_state<D>(run, plan);
     run.get_to(state);
     if (plan.scene->domain.openings) saved.at("traffic").get_to(state.traffic);
+    if (plan.scene->output.profiles) saved.at("profiles").get_to(state.profiles);
     const Kept kept(plan, state, cells);
     require(kept.cells <= cells.cells.size() && state.traffic.fits(kept.cells), *reader,
             "more cells that have come in than the stages of this scene leave room for");

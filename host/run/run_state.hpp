@@ -14,6 +14,7 @@
 #include "observe/cell_traffic.hpp"
 #include "observe/energy.hpp"
 #include "observe/observer.hpp"
+#include "observe/profiles.hpp"
 #include "observe/rheology_history.hpp"
 #include "plan/plan.hpp"
 #include "summary.hpp"
@@ -70,6 +71,7 @@ struct RunState {
   observe::AggregateHistory history;
   observe::RheologyHistory rheology;
   observe::EnergyHistory energy;
+  observe::ProfileHistory profiles;  ///< kept where they are wanted
   PassCosts costs;
   monitor::RestWatch rest_watch;
   monitor::EquilibriumWatch equilibrium;

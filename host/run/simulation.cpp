@@ -59,7 +59,7 @@ class Simulation final : StepHooks {
     progress_.finish();
     summarise();
     log("finished", {{"status", summary_.status}, {"steps", summary_.steps}});
-    if (directory_ != nullptr) directory_->finish(to_json(summary_));
+    if (directory_ != nullptr) directory_->finish(to_json(summary_), state_.profiles);
     return std::move(summary_);
   }
 
@@ -293,14 +293,16 @@ class Simulation final : StepHooks {
       course_.date(snapshot);
       if (scene().domain.is_open()) state_.traffic.cells.tell(snapshot);
       const units::LatticeUnits& units = setting().units;
-      state_.energy.follow(snapshot, setting().is_driven() || solver().setup().external.any(),
-                           units.to_si(solver().slight_energy(), units::dimension::energy_per_depth) /
-                               (scene().domain.node_count() / scene().domain.nodes[0] / scene().domain.nodes[1]));
+      state_.energy.follow(
+          snapshot, setting().is_driven() || solver().setup().external.any() || setting().stage->changes_strengths(),
+          units.to_si(solver().slight_energy(), units::dimension::energy_per_depth) /
+              (scene().domain.node_count() / scene().domain.nodes[0] / scene().domain.nodes[1]));
     }
     if (fails(monitor::check_energy(state_.energy, engine_.cells(), ranks(), plan_, setting()))) return false;
     if (ranks().first()) {
       state_.history.follow(snapshot);
       state_.rheology.follow(snapshot);
+      state_.profiles.follow(snapshot);
       if (directory_ != nullptr) directory_->write(snapshot);
     } else {
       observe::give_all(snapshot.membranes.fields);

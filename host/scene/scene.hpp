@@ -237,8 +237,8 @@ struct Interaction {
   [[nodiscard]] bool with_self() const { return between[1] == self; }
 };
 
-/// Names of cell types that attract each other, in alphabetical order, and how deep their wells are together, J/m2; NaN:
-/// a potential between them tells no energy, or has no well.
+/// Names of cell types that attract each other, in alphabetical order, and how deep their wells are together, J/m2;
+/// NaN: a potential between them tells no energy, or has no well.
 using Attractions = std::map<std::array<std::string, 2>, double>;
 
 enum class WallStart { impulsive, developed };
@@ -266,6 +266,12 @@ struct CellForce {
   }
 };
 
+/// What a stage multiplies an interaction by: one value, two with a ramp between them, or `steps` of equal length.
+struct Strength {
+  std::vector<double> values = {1};
+  bool steps = false;
+};
+
 struct Stage {
   std::string name;
   std::optional<double> duration;  ///< s
@@ -280,6 +286,7 @@ struct Stage {
   std::optional<double> mean_velocity;  ///< m/s, of the fluid in a channel: the pressure gradient is what it takes
   Oscillation oscillation;
   std::vector<CellForce> forces;
+  std::vector<Strength> strengths;                         ///< of each interaction of the scene; empty: all are whole
   double density_factor;                                   ///< Numerics::density_factor unless the stage has its own
   std::string density_factor_key = common_density_factor;  ///< what to change for another one
   std::string pointer;
@@ -289,6 +296,10 @@ struct Stage {
   [[nodiscard]] bool oscillates() const { return oscillation.frequency != 0; }
   /// Whether what drives it changes in time, as the scene says.
   [[nodiscard]] bool changes() const { return oscillates() || oscillation.ramp; }
+  /// Whether interactions do, which then give or take energy.
+  [[nodiscard]] bool changes_strengths() const {
+    return std::any_of(strengths.begin(), strengths.end(), [](const Strength& s) { return s.values.size() > 1; });
+  }
   /// Whether it may end before its duration or strain.
   [[nodiscard]] bool may_end_early() const {
     return until_at_rest || until_equilibrium || until_parted || !until_mean.empty();
@@ -316,6 +327,12 @@ struct FieldStorage {
   [[nodiscard]] int count(int axis, int nodes) const;
 };
 
+/// What is measured across a channel, over y, or across a tube, over the distance from its axis.
+struct Profiles {
+  bool radial;
+  int bins;
+};
+
 struct Output {
   Cadence cells;                        ///< rows of cells.csv, aggregates.csv and membranes in frames.h5
   Cadence fields;                       ///< fluid fields in frames.h5
@@ -323,6 +340,7 @@ struct Output {
   FieldStorage field_storage;
   std::optional<double> checkpoint_seconds = 600;  ///< of wall-clock time between checkpoints; absent: none are written
   double aggregate_gap = 0.75e-6;                  ///< m; two cells are aggregated while their smallest gap is below
+  std::optional<Profiles> profiles = {};
   double bond_share = 0.05;  ///< two cells are joined from this share of the energy on that a whole face would win
 
   [[nodiscard]] bool wants(std::string_view quantity) const {

@@ -225,6 +225,35 @@ void read_forces(const SceneFields& fields, Stage& stage, int dimension, const S
   }
 }
 
+void read_strengths(const SceneFields& fields, Stage& stage, std::size_t interactions) {
+  const std::string pointer = stage.pointer + "/interactions";
+  if (!fields.has(pointer)) return;
+  if (fields.count(pointer) != interactions && fields.settled("/interactions"))
+    fields.refuse(pointer, "this has " + std::to_string(fields.count(pointer)) + " entries, and the scene has " +
+                               std::to_string(interactions) +
+                               " interactions\ngive one for each, in their order; {} leaves one as it is");
+  for (std::size_t i = 0; i < fields.count(pointer); ++i) {
+    Strength& strength = stage.strengths.emplace_back();
+    const std::string key = json::child_pointer(pointer, i) + "/strength";
+    if (!fields.has(key)) continue;
+    const nlohmann::json& value = fields.at(key);
+    strength.steps = value.contains("steps");
+    if (value.is_number()) {
+      strength.values = {value.get<double>()};
+    } else if (strength.steps) {
+      strength.values = value.at("steps").get<std::vector<double>>();
+    } else {
+      strength.values = {value.at("from").get<double>(), value.at("to").get<double>()};
+    }
+    if (!value.is_number() && !stage.duration)
+      fields.refuse(key, "ramps and steps last as long as their stage\ngive the stage a duration (such as \"2 s\")");
+    if (!value.is_number() && stage.until_equilibrium)
+      fields.refuse(key,
+                    "what changes an interaction puts energy in, so that there is no equilibrium\nend the stage by "
+                    "duration");
+  }
+}
+
 void read_until(const SceneFields& fields, const std::string& pointer, Stage& stage) {
   const nlohmann::json& until = fields.at(pointer);
   if (until.is_object()) {
@@ -341,6 +370,7 @@ std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene) {
     stages.push_back(stage);
     fields.attempt(
         [&] { read_forces(fields, stages.back(), scene.domain.dimension(), i > 0 ? &stages[i - 1] : nullptr); });
+    fields.attempt([&] { read_strengths(fields, stages.back(), scene.interactions.size()); });
     fields.attempt([&] {
       if (!again || stage.name.empty()) return;
       fields.refuse(stage.pointer + "/name",
@@ -368,6 +398,19 @@ Output read_output(const SceneFields& fields, const std::vector<Stage>& stages, 
     output.checkpoint_seconds.reset();  // "never"
   }
   output.aggregate_gap = fields.quantity_or("/output/aggregate_gap", "m", range::length, output.aggregate_gap);
+  fields.attempt([&] {
+    if (!fields.has("/output/profiles")) return;
+    output.profiles = {fields.at("/output/profiles/axis") == "r", fields.value_or("/output/profiles/bins", 20)};
+    if (output.profiles->radial != domain.tube_radius.has_value() || domain.has_shapes())
+      fields.refuse("/output/profiles/axis",
+                    domain.has_shapes() ? "walls of other shapes have no profile\nleave output.profiles out"
+                    : output.profiles->radial
+                        ? "\"r\" is the distance from the axis of a tube, and the domain has none\ntake \"y\", or give "
+                          "\"walls\": {\"tube\": ..}"
+                        : "across a tube take \"r\", the distance from its axis");
+    if (output.cells.never())
+      fields.refuse("/output/profiles", "profiles are taken when cells are written\ngive output.cells");
+  });
   output.bond_share = fields.value_or("/output/bond_share", output.bond_share);
   return output;
 }

@@ -30,6 +30,35 @@ TEST_CASE("a developed pressure-driven flow stays the parabola that it was start
   for (double m : mach) CHECK(m == Approx(middle * time_step / spacing * std::sqrt(3.0)).epsilon(std::pow(128.0, -4)));
 }
 
+TEST_CASE("profiles are those of Poiseuille's flow, and hold what the cells enclose", "[conservation]") {
+  auto overrides = pressure_driven;
+  overrides.insert(overrides.end(), {"/stages/0/start=developed", R"(/output/cells={"seconds": 0.002})",
+                                     R"(/output/profiles={"axis": "y", "bins": 32})"});
+  const bool with_cell = GENERATE(false, true);
+  if (!with_cell) overrides.emplace_back("/cells=[]");
+  const SceneRun run = run_scene(scenes + "/ring.json", overrides);
+  REQUIRE(run.summary["status"] == "completed");
+  const std::vector<double> place = run.profile("position_m"), velocity = run.profile("velocity_m_per_s"),
+                            hematocrit = run.profile("hematocrit");
+  REQUIRE(place.size() == 32);
+  const double height = 25.6e-6, width = height / 32;
+  double flow = 0, filled = 0;
+  for (std::size_t k = 0; k < 32; ++k) {
+    CHECK(place[k] == Approx((static_cast<double>(k) + 0.5) * width));
+    flow += velocity[k] * width;
+    filled += hematocrit[k] / 32;
+    if (with_cell) continue;
+    // G y (H - y) / (2 mu) over the bin; rows of the lattice hold the parabola of their middles.
+    const double mean = 2e4 / (2 * 1.2e-3) * (place[k] * (height - place[k]) - width * width / 12);
+    CHECK(velocity[k] == Approx(mean).epsilon(1e-3));
+    CHECK(hematocrit[k] == 0);
+  }
+  // The flow rate has a correction of the midpoint rule at the ends.
+  CHECK(flow == Approx(run.series_column("mean_velocity_m_per_s").back() * height).epsilon(2e-4));
+  const double area = with_cell ? run.column("area_m2").back() : 0;
+  CHECK(filled == Approx(area / (51.2e-6 * 25.6e-6)).epsilon(1e-3).margin(1e-15));
+}
+
 TEST_CASE("a mean velocity without cells is kept by the gradient of Poiseuille's flow", "[conservation]") {
   const SceneRun run = run_scene(
       scenes + "/capsule.json",

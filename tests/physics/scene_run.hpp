@@ -28,8 +28,9 @@ inline const std::string scenes = ROULEAU_PHYSICS_SCENES;
 
 struct SceneRun {
   nlohmann::json scene, summary;
-  std::map<std::string, std::vector<std::string>> cells;   ///< columns of cells.csv
-  std::map<std::string, std::vector<std::string>> series;  ///< columns of series.csv
+  std::map<std::string, std::vector<std::string>> cells;     ///< columns of cells.csv
+  std::map<std::string, std::vector<std::string>> series;    ///< columns of series.csv
+  std::map<std::string, std::vector<std::string>> profiles;  ///< columns of profiles.csv; empty where it is not wanted
 
   /// A column as numbers, rows of one cell only.
   [[nodiscard]] std::vector<double> column(const std::string& name, int cell = 0) const {
@@ -39,9 +40,13 @@ struct SceneRun {
     }
     return values;
   }
-  [[nodiscard]] std::vector<double> series_column(const std::string& name) const {
+  [[nodiscard]] std::vector<double> series_column(const std::string& name) const { return numbers(series.at(name)); }
+  [[nodiscard]] std::vector<double> profile(const std::string& name) const { return numbers(profiles.at(name)); }
+
+ private:
+  static std::vector<double> numbers(const std::vector<std::string>& texts) {
     std::vector<double> values;
-    for (const std::string& text : series.at(name)) values.push_back(std::stod(text));
+    for (const std::string& text : texts) values.push_back(std::stod(text));
     return values;
   }
 };
@@ -82,6 +87,7 @@ inline SceneRun run_scene(const std::filesystem::path& file, const std::vector<s
   std::ifstream(folder.path() / "run" / "summary.json") >> run.summary;
   run.cells = read_table(folder.path() / "run" / "cells.csv");
   run.series = read_table(folder.path() / "run" / "series.csv");
+  run.profiles = read_table(folder.path() / "run" / "profiles.csv");
   return run;
 }
 

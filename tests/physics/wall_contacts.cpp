@@ -212,7 +212,7 @@ TEST_CASE("the walls' shear stress is that of the flow and of the cell's particl
     const auto wall = bench.solver->fluid().wall_stress();
     const double stress = viscosity_of(stage.tau) * stage.shear_rate;
     const double walls = (wall.lower - wall.upper) / 2 / stress - 1;
-    const double particle = particle_stress(bench.membranes, bench.scene, viscosity_of(stage.tau)) / stress;
+    const double particle = particle_stress(bench.membranes, bench.scene, viscosity_of(stage.tau)).xy / stress;
     const double residual =
         Observer::momentum_residual(bench.membranes, bench.solver->cell_tasks()->force_from_outside());
     const double without = Observer::momentum_residual(bench.membranes);

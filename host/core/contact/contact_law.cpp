@@ -38,8 +38,18 @@ void ContactValues::clear() {
   key.clear();
 }
 
-ContactLaw::ContactLaw(Potential potential, std::size_t place, ContactMemory& memory, std::size_t cells)
+double Course::at(double time) const {
+  if (values.empty()) return 1;
+  const double share = changes() ? std::clamp(time / length, 0.0, 1.0) : 0;
+  if (!steps) return values.front() + share * (values.back() - values.front());
+  return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
+}
+
+ContactLaw::ContactLaw(Potential potential, std::size_t place, ContactMemory& memory, std::size_t cells,
+                       Course strength)
     : potential_(std::move(potential)),
+      course_(std::move(strength)),
+      strength_(course_.at(0)),
       cutoff_(cutoff_of(potential_)),
       reads_normal_velocity_(potential_.reads("normal_velocity")),
       reads_tangential_velocity_(potential_.reads("tangential_velocity")),
@@ -94,6 +104,7 @@ void ContactLaw::evaluate(int nodes, const std::vector<ContactState>& known, con
   if (remembers()) block.state = state.data();
   if (remembers() && next != nullptr) block.new_state = new_state.data();
   potential_.compute(&block);
+  for (std::size_t i = 0; strength_ != 1 && i < count; ++i) law[i] *= strength_;
   if (next == nullptr) return;
   for (std::size_t v = 0; v < variables_.size(); ++v) {
     const auto& [variable, initial] = variables_[v];

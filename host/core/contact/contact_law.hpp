@@ -11,22 +11,36 @@
 
 namespace rouleau::core {
 
+/// What a potential is multiplied by in the course of a setup: 1, one value, two with a ramp between them or, with
+/// `steps`, some that last equally long.
+struct Course {
+  std::vector<double> values = {};
+  bool steps = false;
+  double length = 0;  ///< time steps, after which the last value stays
+
+  [[nodiscard]] bool changes() const { return values.size() > 1; }
+  [[nodiscard]] double at(double time) const;
+};
+
 /// A potential between cells of two types (unordered; equal: between different cells of one type and own images).
 struct Interaction {
   std::array<int, 2> between;
   Potential potential;
+  Course strength = {};
 };
 
 /// A potential between the cells of a type and the walls.
 struct WallInteraction {
   int type;
   Potential potential;
+  Course strength = {};
 };
 
 /// A potential between the parts of each cell of a type.
 struct SelfInteraction {
   int type;
   Potential potential;
+  Course strength = {};
 };
 
 /// Beyond it the potential does nothing, spacings.
@@ -60,7 +74,10 @@ class ContactLaw {
  public:
   /// Adds what the potential, the `place`-th of those that share the memory, remembers of so many cells, as far as it
   /// is not there from an earlier stage.
-  ContactLaw(Potential potential, std::size_t place, ContactMemory& memory, std::size_t cells);
+  ContactLaw(Potential potential, std::size_t place, ContactMemory& memory, std::size_t cells, Course strength = {});
+
+  /// So many time steps after the setup's start.
+  void set_time(double time) { strength_ = course_.at(time); }
 
   [[nodiscard]] const Potential& potential() const { return potential_; }
   [[nodiscard]] double cutoff() const { return cutoff_; }
@@ -81,7 +98,8 @@ class ContactLaw {
 
  private:
   Potential potential_;
-  double cutoff_;
+  Course course_;
+  double strength_, cutoff_;
   bool reads_normal_velocity_, reads_tangential_velocity_, reads_sliding_speed_, has_energy_;
   struct Variable {
     std::size_t place;  ///< in ContactMemory::variables

@@ -39,13 +39,13 @@ Cutoffs pair_cutoffs(const CellNodes& cells, const std::vector<Interaction>& int
   for (const Interaction& interaction : interactions)
     types = std::max({types, interaction.between[0] + 1, interaction.between[1] + 1});
   Cutoffs cutoffs(types);
-  for (const auto& [between, potential] : interactions) cutoffs.raise(between[0], between[1], cutoff_of(potential));
+  for (const Interaction& i : interactions) cutoffs.raise(i.between[0], i.between[1], cutoff_of(i.potential));
   return cutoffs;
 }
 
 std::vector<double> self_cutoffs(std::size_t types, const std::vector<SelfInteraction>& within_cells) {
   std::vector<double> cutoffs(within_cells.empty() ? 0 : types, 0.0);
-  for (const auto& [type, potential] : within_cells) {
+  for (const auto& [type, potential, strength] : within_cells) {
     if (!potential.state.empty() || potential.reads("normal_velocity") || reads_sliding(potential))
       throw std::invalid_argument("a potential within a membrane depends on the distance alone: " + potential.id);
     cutoffs[type] = std::max(cutoffs[type], cutoff_of(potential));

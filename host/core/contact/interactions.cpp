@@ -10,19 +10,6 @@ namespace rouleau::core {
 
 namespace {
 
-bool acts_between(const Interaction& interaction, int a, int b) {
-  return (interaction.between[0] == a && interaction.between[1] == b) ||
-         (interaction.between[0] == b && interaction.between[1] == a);
-}
-
-/// Half a node's measure at rest: the other half of a contact's energy is that of the nodes of the other side.
-template <class Cells>
-auto half_weight(const Cells& cells, int cell) {
-  const CellRange& range = cells.cells[cell];
-  const double* weight = cells.types[range.type]->node_measure().data();
-  return [weight, first = range.first](int node) { return 0.5 * weight[node - first]; };
-}
-
 int node_of(const ContactList& list, std::size_t i) { return list.node[i]; }
 int node_of(const ContactsOf<3>::List& list, std::size_t i) { return list.contacts[i].node; }
 
@@ -37,13 +24,15 @@ Interactions<D>::Interactions(Cells& cells, std::vector<Interaction> between_cel
       scratch_(cells.cells.size()),
       reactions_(cells.cells.size()),
       across_images_(cells.cells.size()) {
-  for (const auto& [type, potential] : within_cells) interactions_.push_back({{type, type}, potential});
+  for (const auto& [type, potential, strength] : within_cells)
+    interactions_.push_back({{type, type}, potential, strength});
   for (const Interaction& interaction : interactions_) {
     const Potential& potential = interaction.potential;
     if (D == 3 && potential.reads("tangential_velocity"))
       throw std::invalid_argument("\"" + potential.id +
                                   "\" reads a tangential velocity, which has no sign on surfaces");
-    const ContactLaw& law = laws_.emplace_back(potential, laws_.size(), cells.contacts, cells.cells.size());
+    const ContactLaw& law =
+        laws_.emplace_back(potential, laws_.size(), cells.contacts, cells.cells.size(), interaction.strength);
     remembers_ = remembers_ || law.remembers();
     needs_velocities_ = needs_velocities_ || law.reads_velocities();
   }
@@ -116,15 +105,24 @@ std::vector<PairEnergy> Interactions<D>::pair_energies(const Cells& cells) const
   Scratch scratch;
   for (const int cell : cells.own_cells()) {
     evaluate(cell, cells, true, nullptr, scratch);
-    const CellRange& range = cells.cells[cell];
-    const double* measure = cells.types[range.type]->node_measure().data();
+    const auto weight = half_weight(cells, cell);
     const auto first = static_cast<std::ptrdiff_t>(pairs.size());
-    for_others(cell, scratch.contacts, [&](int other, const ImageShift& shift, std::size_t i) {
+    const auto add = [&](int other, const ImageShift& shift, std::size_t i) {
       auto pair = std::find_if(pairs.begin() + first, pairs.end(),
                                [&](const PairEnergy& p) { return p.other == other && p.shift == shift; });
       if (pair == pairs.end()) pair = pairs.insert(pair, {cell, other, shift, 0});
-      pair->energy += 0.5 * measure[node_of(scratch.contacts, i) - range.first] * scratch.result[i];
-    });
+      pair->energy += weight(node_of(scratch.contacts, i)) * scratch.result[i];
+    };
+    if constexpr (D == 2) {
+      const std::vector<NeighbourList::Pair>& near = contacts_.neighbours().list(cell).pairs;
+      for (std::size_t p = 0; p < near.size(); ++p)
+        for (int i = scratch.contacts.ranges[p].begin; i < scratch.contacts.ranges[p].end; ++i)
+          add(near[p].other, near[p].shift, static_cast<std::size_t>(i));
+    } else {
+      const std::vector<TriangleContact>& contacts = scratch.contacts.contacts;
+      for (std::size_t i = 0; i < contacts.size(); ++i)
+        if (!contacts[i].within) add(contacts[i].other, contacts[i].shift, i);
+    }
   }
   return pairs;
 }
@@ -148,7 +146,7 @@ int Interactions<2>::find(int cell, const Membranes& membranes, Scratch& scratch
 // Pairs are listed by type of the other cell: what a potential acts at stands in one piece.
 template <>
 Range Interactions<2>::choose(std::size_t law, int cell, const Membranes& membranes, Scratch& scratch) const {
-  const auto& [between, potential] = interactions_[law];
+  const std::array<int, 2>& between = interactions_[law].between;
   const ContactList& list = scratch.contacts;
   const CellRange& own = membranes.cells[cell];
   const double cutoff = laws_[law].cutoff();
@@ -179,15 +177,6 @@ Range Interactions<2>::choose(std::size_t law, int cell, const Membranes& membra
 }
 
 template <>
-template <class Visit>
-void Interactions<2>::for_others(int cell, const ContactList& list, Visit visit) const {
-  const std::vector<NeighbourList::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
-  for (std::size_t p = 0; p < pairs.size(); ++p)
-    for (int i = list.ranges[p].begin; i < list.ranges[p].end; ++i)
-      visit(pairs[p].other, pairs[p].shift, static_cast<std::size_t>(i));
-}
-
-template <>
 void Interactions<2>::make_room_for_reactions(int cell) {
   const auto touched = static_cast<std::size_t>(contacts_.neighbours().list(cell).touched);
   reactions_[cell].x.assign(touched, 0.0);
@@ -210,7 +199,7 @@ void Interactions<2>::act(int cell, Membranes& membranes, const Scratch& scratch
     force_x[from] -= (1 - along[i]) * fx, force_y[from] -= (1 - along[i]) * fy;
     force_x[to] -= along[i] * fx, force_y[to] -= along[i] * fy;
   }
-  across_images_[cell] = 0;
+  std::array<double, 4>& across = across_images_[cell] = {};
   const std::vector<NeighbourList::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const NeighbourList::Pair& pair = pairs[p];
@@ -234,8 +223,12 @@ void Interactions<2>::act(int cell, Membranes& membranes, const Scratch& scratch
       act_at(i + half);
     }
     for (int i = middle + half; i < range.end; ++i) act_at(i);
-    for (int i = range.begin; i < range.end && pair.shift.y != 0; ++i)
-      across_images_[cell] += pair.shift.y * weight(node[i]) * force[i] * direction_x[i];
+    for (int i = range.begin; i < range.end && !(pair.shift == ImageShift{}); ++i) {
+      const double f = weight(node[i]) * force[i];
+      across[0] += pair.shift.y * f * direction_x[i];
+      across[1] += pair.shift.x * f * direction_x[i];
+      across[2] += pair.shift.y * f * direction_y[i];
+    }
   }
 }
 
@@ -300,13 +293,6 @@ Range Interactions<3>::choose(std::size_t law, int cell, const Surfaces& surface
 }
 
 template <>
-template <class Visit>
-void Interactions<3>::for_others(int, const List& list, Visit visit) const {
-  for (std::size_t i = 0; i < list.contacts.size(); ++i)
-    if (!list.contacts[i].within) visit(list.contacts[i].other, list.contacts[i].shift, i);
-}
-
-template <>
 void Interactions<3>::make_room_for_reactions(int cell) {
   std::erase_if(reactions_[cell], [](const TouchedCell& touched) { return touched.reactions.empty(); });
   for (TouchedCell& touched : reactions_[cell]) touched.reactions.clear();
@@ -315,12 +301,14 @@ void Interactions<3>::make_room_for_reactions(int cell) {
 template <>
 void Interactions<3>::act(int cell, Surfaces& surfaces, const Scratch& scratch) {
   const auto weight = half_weight(surfaces, cell);
-  across_images_[cell] = 0;
+  std::array<double, 4>& across = across_images_[cell] = {};
   for (std::size_t c = 0; c < scratch.contacts.contacts.size(); ++c) {
     const TriangleContact& contact = scratch.contacts.contacts[c];
     if (scratch.result[c] == 0) continue;
     const Vec<3> force = weight(contact.node) * scratch.result[c] * contact.direction;
-    across_images_[cell] += contact.shift.y * force.x();
+    const ImageShift& shift = contact.shift;
+    across[0] += shift.y * force.x();
+    across[1] += shift.x * force.x(), across[2] += shift.y * force.y(), across[3] += shift.z * force.z();
     for (int k = 0; k < 3; ++k) surfaces.force[k][contact.node] += force[k];
     std::vector<TouchedCell::Reaction>& reactions = TouchedCell::reactions_on(contact.other, reactions_[cell]);
     for (std::size_t k = 0; k < 3; ++k)

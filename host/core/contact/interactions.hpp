@@ -3,47 +3,14 @@
 #pragma once
 
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "base/worker.hpp"
-#include "contact_law.hpp"
+#include "contacts_of.hpp"
 #include "core/domain/ranks.hpp"
-#include "core/membrane/membranes.hpp"
-#include "core/surface/surfaces.hpp"
 #include "cutoffs.hpp"
-#include "reactions.hpp"
-#include "segment_contacts.hpp"
-#include "triangle_contacts.hpp"
 
 namespace rouleau::core {
-
-/// Closest points, and how reactions are kept.
-template <int D>
-struct ContactsOf;
-template <>
-struct ContactsOf<2> {
-  using Cells = Membranes;
-  using Finder = SegmentContacts;
-  using List = ContactList;
-  using Reactions = TouchedNodes;
-};
-template <>
-struct ContactsOf<3> {
-  using Cells = Surfaces;
-  using Finder = TriangleContacts;
-  struct List : ContactValues {
-    std::vector<TriangleContact> contacts;
-  };
-  using Reactions = std::vector<TouchedCell>;
-};
-
-/// What the contacts of a cell's nodes with an image of another cell hold: their half of a pair's energy.
-struct PairEnergy {
-  int cell, other;
-  ImageShift shift;  ///< of the other
-  double energy;     ///< lattice units
-};
 
 /// Node i with rest measure w (in two dimensions a length, in three an area) at distance r of its closest point on
 /// another cell: energy w/2 phi(r), force w/2 f(r) along the connecting line, the reaction shared by the ends of the
@@ -70,6 +37,10 @@ class Interactions {
   /// Between steps, with other ranks: whether lists of cells that are near each other are out of date
   /// (DisplacementWatch).
   [[nodiscard]] DisplacementWatch& watch() { return contacts_.watch(); }
+  /// Before a step: so many after the setup's start.
+  void set_time(double time) {
+    for (ContactLaw& law : laws_) law.set_time(time);
+  }
   /// Takes no memory for the cells that are not known, which have these nodes.
   void forget(const Cells& cells, std::span<const Range> nodes);
   /// Whether potentials want to know velocities.
@@ -88,9 +59,9 @@ class Interactions {
   /// After phase 1: what a cell does to others; of another rank's cell that is to be put there before phase 2.
   [[nodiscard]] Reactions& reactions(int cell) { return reactions_[cell]; }
 
-  /// After phase 1: over a cell's contacts the sum of the force along x on its nodes, times the periods along y by
-  /// which the other's image is shifted.
-  [[nodiscard]] double force_across_images(int cell) const { return across_images_[cell]; }
+  /// After phase 1: over a cell's contacts the sum of the force on its nodes times the periods by which the other's
+  /// image is shifted: along x times those along y, then along x, y and z each times its own.
+  [[nodiscard]] const std::array<double, 4>& force_across_images(int cell) const { return across_images_[cell]; }
 
   /// Energy of the contacts at the present positions, for which run() has made the lists, in their present state, of
   /// all ranks' cells. Not a pass.
@@ -119,10 +90,6 @@ class Interactions {
   /// Sets scratch.result to the sum of the potentials' forces, or energies, at the contacts of a cell. `next`: as
   /// ContactLaw has it.
   void evaluate(int cell, const Cells& cells, bool energy, std::vector<ContactState>* next, Scratch& scratch) const;
-  /// Calls visit(other, shift, i) for the contacts i of a cell that are not its own, those with an image one after
-  /// another or in the order of nodes.
-  template <class Visit>
-  void for_others(int cell, const List& list, Visit visit) const;
   void make_room_for_reactions(int cell);
   /// Forces on the cell's own nodes; those on others are left for their workers.
   void act(int cell, Cells& cells, const Scratch& scratch);
@@ -134,8 +101,8 @@ class Interactions {
   bool remembers_ = false, needs_velocities_ = false;
   typename ContactsOf<D>::Finder contacts_;
   WorkerScratch<Scratch> scratch_;
-  std::vector<Reactions> reactions_;   // of each cell's contacts
-  std::vector<double> across_images_;  // of each cell
+  std::vector<Reactions> reactions_;                  // of each cell's contacts
+  std::vector<std::array<double, 4>> across_images_;  // of each cell
 };
 
 }  // namespace rouleau::core

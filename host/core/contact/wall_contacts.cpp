@@ -19,11 +19,11 @@ WallContacts<D>::WallContacts(Cells& cells, const std::vector<WallInteraction>& 
   }
   if (walls_.empty() && !region) throw std::invalid_argument("a potential between cells and walls needs walls");
   double reach = 0;
-  for (const auto& [type, potential] : interactions) {
+  for (const auto& [type, potential, strength] : interactions) {
     // Friction would be part of the walls' stress and power.
     if (reads_sliding(potential))
       throw std::invalid_argument("a potential with walls does not read how surfaces slide: " + potential.id);
-    laws_.push_back({type, ContactLaw(potential, laws_.size(), cells.wall_contacts, cells.cells.size())});
+    laws_.push_back({type, ContactLaw(potential, laws_.size(), cells.wall_contacts, cells.cells.size(), strength)});
     remembers_ = remembers_ || laws_.back().law.remembers();
     reach = std::max(reach, laws_.back().law.cutoff());
   }

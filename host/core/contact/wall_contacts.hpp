@@ -49,6 +49,10 @@ class WallContacts {
   WallContacts(Cells& cells, const std::vector<WallInteraction>& interactions, const Domain<D>& domain,
                RegionPointer<D> region = {});
 
+  /// Before a step: so many after the setup's start.
+  void set_time(double time) {
+    for (OfType& of_type : laws_) of_type.law.set_time(time);
+  }
   /// Pass over cells: adds to the forces, and advances the state of the contacts by one step.
   void run(Worker worker, Cells& cells) const;
 

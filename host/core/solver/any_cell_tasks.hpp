@@ -67,7 +67,7 @@ class AnyCellTasks {
   [[nodiscard]] virtual std::array<double, 3> force_from_outside() const = 0;
   [[nodiscard]] virtual std::array<double, 4> external_sums() const = 0;
   /// Of a cell: InteractionForces::force_across_images.
-  [[nodiscard]] virtual double force_across_images(int cell) const = 0;
+  [[nodiscard]] virtual std::array<double, 4> force_across_images(int cell) const = 0;
 
  protected:
   /// Of these interactions, each null where there are none.

@@ -91,13 +91,18 @@ class CellTasks final : public AnyCellTasks<D> {
   [[nodiscard]] std::array<double, 4> external_sums() const override {
     return setup_.external.any() ? setup_.external.sums(cells_, ranks_) : std::array<double, 4>{};
   }
-  [[nodiscard]] double force_across_images(int cell) const override {
-    return interactions_ ? interactions_->force_across_images(cell) : 0;
+  [[nodiscard]] std::array<double, 4> force_across_images(int cell) const override {
+    return interactions_ ? interactions_->force_across_images(cell) : std::array<double, 4>{};
   }
   [[nodiscard]] std::vector<InteractionEnergy> interaction_energies() const override {
     return this->energies_of(cells_, ranks_, interactions_, wall_contacts_);
   }
 
+  /// Before a step: so many after the setup's start.
+  void set_time(double time) {
+    if (interactions_) interactions_->set_time(time);
+    if (wall_contacts_) wall_contacts_->set_time(time);
+  }
   [[nodiscard]] std::vector<PairEnergy> pair_energies() const override {
     return interactions_ ? interactions_->pair_energies(cells_) : std::vector<PairEnergy>{};
   }

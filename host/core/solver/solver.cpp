@@ -150,12 +150,13 @@ Solver<T, Set>::Solver(Setup setup, Cells& cells, const Ranks<dimension>& ranks,
 template <class T, class Set>
 void Solver<T, Set>::make_passes() {
   const bool ranks = fluid_.ranks().several();
-  StepFeatures features{.viscosity_contrast = fluid_.setting().viscosity_contrast,
-                        .moving_frame = setup_.follow_cells,
-                        .changing_drive = setup_.oscillation.any() || flow_control_.has_value(),
-                        .changing_forces = cell_tasks_ != nullptr && !setup_.external.pulls.empty(),
-                        .uneven_rows = !fluid_.fluid_below().empty(),
-                        .ranks = ranks};
+  StepFeatures features{
+      .viscosity_contrast = fluid_.setting().viscosity_contrast,
+      .moving_frame = setup_.follow_cells,
+      .changing_drive = setup_.oscillation.any() || flow_control_.has_value(),
+      .changing_forces = cell_tasks_ != nullptr && (!setup_.external.pulls.empty() || setup_.strengths_change()),
+      .uneven_rows = !fluid_.fluid_below().empty(),
+      .ranks = ranks};
   if (cell_tasks_) cell_tasks_->describe(features);
   const Schedule schedule = make_schedule(features);
   for (const Step& step : schedule.steps) {
@@ -180,6 +181,7 @@ void Solver<T, Set>::run(Task task, Worker worker) {
       if (!worker.first()) return;
       oscillate(steps_);
       setup_.external.steps = steps_;
+      if (setup_.strengths_change()) cell_tasks_->set_time(static_cast<double>(steps_));
       if (flow_control_ && flow_control_->due(steps_)) this->end_messages(), keep_mean_velocity();
       return;
     case Task::end_step:

@@ -76,6 +76,13 @@ struct BasicSolverSetup {
   /// Only between walls.
   std::vector<WallInteraction> wall_interactions = {};
   std::vector<SelfInteraction> self_interactions = {};
+  /// Whether any of these changes in the course of the setup.
+  [[nodiscard]] bool strengths_change() const {
+    const auto any = [](const auto& list) {
+      return std::any_of(list.begin(), list.end(), [](const auto& each) { return each.strength.changes(); });
+    };
+    return any(interactions) || any(wall_interactions) || any(self_interactions);
+  }
   /// On cells, from outside.
   ExternalForces<D> external = {};
   /// The step of stiff membranes (SemiImplicitFilter, SurfaceFilter).

@@ -193,6 +193,56 @@ TEST_CASE("several potentials between two types add up, each within its own cuto
   CHECK(sum.energy(both) == Approx(a.energy(first) + b.energy(second)));
 }
 
+TEST_CASE("the energies of pairs, from both sides, are the energy of all") {
+  auto random = generator(43);
+  Membranes m = biconcave_cells(rouleau_of_three);
+  deform(m, random, 2);
+  Interactions<2> forces(m, {{{0, 0}, morse(0.2, 0.3, 2.5, 18)}}, periodic_box(10000));
+  run(forces, m);
+  const std::vector<PairEnergy> pairs = forces.pair_energies(m);
+  REQUIRE(pairs.size() == 4);  // the outer ones do not meet
+  double sum = 0;
+  for (const PairEnergy& pair : pairs) {
+    CHECK(std::abs(pair.cell - pair.other) == 1);
+    CHECK(pair.shift == ImageShift{});
+    CHECK(pair.energy < 0);
+    sum += pair.energy;
+  }
+  CHECK(sum == Approx(forces.energy(m)).epsilon(1e-12));
+}
+
+TEST_CASE("a strength is one value, a ramp or steps, and multiplies force and energy") {
+  CHECK(Course{}.at(7) == 1);
+  CHECK(Course{{0.3}}.at(7) == 0.3);
+  const Course ramp{{1, 0.5}, false, 10}, steps{{1, 0.5, 0}, true, 30};
+  CHECK(ramp.at(0) == 1);
+  CHECK(ramp.at(5) == 0.75);
+  CHECK(ramp.at(20) == 0.5);
+  CHECK(steps.at(9) == 1);
+  CHECK(steps.at(10) == 0.5);
+  CHECK(steps.at(29) == 0.5);
+  CHECK(steps.at(30) == 0);
+  CHECK(ramp.changes());
+  CHECK_FALSE(Course{{0.3}}.changes());
+
+  auto random = generator(44);
+  Membranes m = biconcave_cells(rouleau_of_three);
+  deform(m, random, 2);
+  Membranes whole = m, half = m;
+  const auto potential = morse(0.2, 0.3, 2.5, 18);
+  Interactions<2> as_it_is(m, {{{0, 0}, potential}}, periodic_box(10000)),
+      ramped(m, {{{0, 0}, potential, {{1, 0}, false, 10}}}, periodic_box(10000));
+  ramped.set_time(5);
+  run(as_it_is, whole), run(ramped, half);
+  for (std::size_t i = 0; i < m.position[0].size(); ++i)
+    REQUIRE(half.force[1][i] == Approx(0.5 * whole.force[1][i]).margin(1e-15));
+  CHECK(ramped.energy(half) == Approx(0.5 * as_it_is.energy(whole)));
+  ramped.set_time(10);
+  clear(half);
+  run(ramped, half);
+  for (const double force : half.force[0]) REQUIRE(force == 0);
+}
+
 TEST_CASE("forces are the same to the last bit for one, two and three workers") {
   auto random = generator(51);
   Membranes start = biconcave_cells({{0, -19, 0.05}, {2, 0, 0.0}, {-1, 18, -0.08}, {30, 30, 1.3}});

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <complex>
 #include <functional>
 #include <numbers>
 #include <numeric>
@@ -42,6 +43,42 @@ TEST_CASE("aggregates are counted by size, with the two means") {
   CHECK(weight_mean(sizes) == (3.0 + 4 + 9) / 8);
   CHECK(std::isnan(number_mean({})));
   CHECK(std::isnan(weight_mean({})));
+}
+
+TEST_CASE("turned by an eighth of a turn the shear stress is half of the first normal stress difference") {
+  using namespace rouleau;
+  scene::Scene scene;
+  scene.domain.size = scene::Vector::filled(2, 100e-6);
+  scene.domain.nodes = {100, 100};
+  scene.domain.periodic[1] = true;
+  scene.fluid.viscosity = 1;
+  scene.cell_types.push_back({.name = "a", .shape = scene::Circle{1}, .segments = 3, .interior_viscosity = 5});
+  const auto turned = [&](double angle) {
+    const std::complex<double> turn = std::polar(1.0, angle);
+    core::Membranes m;
+    m.cells.push_back({{0, 3}, 0, 0, 0});
+    // A triangle, forces that have no sum, and velocities.
+    const std::complex<double> place[] = {{2, 1}, {9, 3}, {4, 8}}, force[] = {{0.3, -0.2}, {-0.7, 0.4}, {0.4, -0.2}},
+                               velocity[] = {{0.1, 0.05}, {-0.02, 0.3}, {0.2, -0.1}};
+    for (int k = 0; k < 3; ++k) {
+      m.position[0].push_back((turn * place[k]).real() + 50), m.position[1].push_back((turn * place[k]).imag() + 50);
+      m.force[0].push_back((turn * force[k]).real()), m.force[1].push_back((turn * force[k]).imag());
+      m.velocity[0].push_back((turn * velocity[k]).real()), m.velocity[1].push_back((turn * velocity[k]).imag());
+    }
+    return particle_stress(m, scene, 0.7);
+  };
+  const double eighth = std::numbers::pi / 4;
+  // Of a tensor turned by 45 degrees the xy part is (xx - yy) / 2, and xx - yy is -2 xy; that of forces is not symmetric.
+  const ParticleStress stress = turned(0), quarter = turned(2 * eighth), half = turned(4 * eighth);
+  CHECK(quarter.first == Approx(-stress.first).epsilon(1e-9));
+  CHECK(half.first == Approx(stress.first).epsilon(1e-9));
+  CHECK(half.xy == Approx(stress.xy).epsilon(1e-9));
+  const double symmetric = (stress.xy - quarter.xy) / 2;  // the antisymmetric part stays
+  CHECK(turned(eighth).first == Approx(-2 * symmetric).epsilon(1e-9));
+  CHECK(turned(-eighth).first == Approx(2 * symmetric).epsilon(1e-9));
+  CHECK((turned(eighth).xy - turned(-eighth).xy) / 2 == Approx(stress.first / 2).epsilon(1e-9));
+  CHECK(std::isnan(stress.second));
+  CHECK(std::abs(stress.first) > 1e-5);
 }
 
 TEST_CASE("an aggregate has come apart where its members are never together again") {

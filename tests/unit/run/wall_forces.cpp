@@ -58,7 +58,8 @@ struct Bench {
   [[nodiscard]] double particle_stress(bool with_images = true) {
     const auto across = [this](int c) { return solver->cell_tasks()->force_across_images(c); };
     return observe::particle_stress(cells, scene, solver->setup().viscosity(), solver->ranks(),
-                                    with_images ? across : observe::ForceAcrossImages{});
+                                    with_images ? across : observe::ForceAcrossImages{})
+        .xy;
   }
 
   scene::Scene scene;
