@@ -10,19 +10,6 @@
 
 namespace rouleau::core {
 
-/// Boxes around triangles of a cell that follow each other, `size` to a box: made when they are asked for, as long as
-/// nothing moves.
-class TriangleBoxes {
- public:
-  static constexpr int size = 16;
-  explicit TriangleBoxes(const Surfaces& surfaces) : surfaces_(surfaces), of_cell_(surfaces.cells.size()) {}
-  const std::vector<Eigen::AlignedBox3d>& of(int cell);
-
- private:
-  const Surfaces& surfaces_;
-  std::vector<std::vector<Eigen::AlignedBox3d>> of_cell_;
-};
-
 /// Images of cells in patches of triangles that follow each other, which lie side by side in most meshes: who asks for
 /// the triangles near a place looks at patches first.
 class NearTriangles {
@@ -48,8 +35,7 @@ class NearTriangles {
   };
 
   /// Adds those triangles of an image that lie within the reach of a box; the image, if there are any.
-  void add(const BoundingBox<3>& box, Image image, double reach, const Surfaces& surfaces, const Domain<3>& domain,
-           TriangleBoxes& boxes);
+  void add(const BoundingBox<3>& box, Image image, double reach, const Surfaces& surfaces, const Domain<3>& domain);
   /// After all have been added, by cell, then by shift: the order of images.
   void sort_images();
   [[nodiscard]] const std::vector<Image>& images() const { return images_; }

@@ -84,12 +84,11 @@ void TriangleContacts::refresh(Worker worker, const Surfaces& surfaces) {
   const std::vector<BoundingBox<3>> boxes = boxes_of_known<3>(surfaces);
   const CellGrid<3> grid(boxes, cutoffs_.largest() + 2 * skin, domain_);
   std::vector<int> near;
-  TriangleBoxes patches(surfaces);
   for (const int cell : cells) {
     lists_[cell] = {};
     if (of_all_ || surfaces.owns(cell)) {
       grid.find(cell, near);
-      list_candidates(cell, surfaces, near, boxes, patches, skin);
+      list_candidates(cell, surfaces, near, boxes, skin);
     }
     watch_.remember(cell, surfaces, skin);
   }
@@ -102,7 +101,7 @@ void TriangleContacts::forget(const Surfaces& surfaces, std::span<const Range> n
 }
 
 void TriangleContacts::list_candidates(int cell, const Surfaces& surfaces, const std::vector<int>& near,
-                                       const std::vector<BoundingBox<3>>& boxes, TriangleBoxes& patches, double skin) {
+                                       const std::vector<BoundingBox<3>>& boxes, double skin) {
   CandidateList& list = lists_[cell];
   const CellRange& own = surfaces.cells[cell];
   const auto place_of = [&](int node) { return vector_at<3>(surfaces.position, node); };
@@ -112,7 +111,7 @@ void TriangleContacts::list_candidates(int cell, const Surfaces& surfaces, const
     for_each_image(boxes[cell], boxes[other], reach, domain_, [&](ImageShift shift) {
       const bool within = other == cell && shift == ImageShift{};
       const double most = cutoff(surfaces, cell, other, within);
-      if (most > 0) triangles.add(boxes[cell], {other, shift, within}, most + 2 * skin, surfaces, domain_, patches);
+      if (most > 0) triangles.add(boxes[cell], {other, shift, within}, most + 2 * skin, surfaces, domain_);
     });
   }
   triangles.sort_images();

@@ -123,7 +123,7 @@ class TriangleContacts {
   [[nodiscard]] double cutoff(const Surfaces& surfaces, int cell, int other, bool within) const;
   /// `near`: cells that may be near.
   void list_candidates(int cell, const Surfaces& surfaces, const std::vector<int>& near,
-                       const std::vector<BoundingBox<3>>& boxes, TriangleBoxes& patches, double skin);
+                       const std::vector<BoundingBox<3>>& boxes, double skin);
   void look_at_next(const Surfaces& surfaces, CandidateList& list) const;
   static TriangleContact contact(const Search& search, const CandidateList& list, const Surfaces& surfaces);
 
