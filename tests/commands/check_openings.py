@@ -415,7 +415,7 @@ class Openings(unittest.TestCase):
             cells = list(csv.DictReader(table))
         length = float(scene["domain"]["size"]["xyz".index(axis)].split()[0]) * UM
         self.assertTrue(all(0 < float(cell[f"{axis}_m"]) < length and float(cell["min_gap_m"]) > 0 for cell in cells))
-        self.assertEqual(sorted(came)[-1], len(came) - (0 if scene["cells"] else 1))
+        self.assertEqual(sorted(came)[-1], len(came) - (0 if scene.get("cells") else 1))
         inlet = json.loads((self.folder / name / "summary.json").read_text())["cell_traffic"]["stages"][0]["ends"][0]
         hematocrit = scene["domain"][axis]["lower"]["inlet"]["cells"]["hematocrit"]
         self.assertAlmostEqual(inlet["volume_in"], hematocrit * inlet["flow_in"], delta=content)
