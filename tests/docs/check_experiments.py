@@ -86,7 +86,7 @@ class Table(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
-        self.page = pathlib.Path(self.folder.name) / "page.md"
+        self.page = pathlib.Path(self.folder.name) / "page"
         self.page.write_text(PAGE)
 
     def test_a_number_comes_to_its_place_and_all_others_stay(self):
