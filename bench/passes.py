@@ -21,10 +21,14 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 SUSPENSION = {"/numerics/kernel": '"sharp6"', "/numerics/slip_correction": "true", "/numerics/area_correction": "true"}
+DENSE = {**SUSPENSION, "/domain/size": '["27 um", "26 um", "22 um"]', "/domain/nodes": "[81, 78, 66]",  # 50 cells
+         "/cells/0/random/hematocrit": "0.3", "/cells/0/random/gap": '"0.2 um"'}
 SCENES = {  # name: file, what is set, steps counted
     "capsule": ("tests/physics/scenes/plain-capsule-3d.json", {}, (10, 30)),
     "doublet": ("scenes/doublet-3d.json", {}, (10, 30)),
     "suspension": ("scenes/suspension-3d.json", SUSPENSION, (4, 12)),
+    "dense": ("scenes/suspension-3d.json", DENSE, (4, 12)),
+    "tube": ("scenes/blood/tube-20.json", {}, (4, 12)),
     "slit": ("scenes/slit-3d.json", {}, (10, 30)),
 }
 # What CellTasks::run and the passes over rows call; the first that fits.
@@ -121,7 +125,7 @@ def table(arguments, name: str, precision: str, folder: Path, bandwidth: float) 
     first, last = (run(arguments, scene, settings, steps, folder) for steps in (few, 5 * more))
     spent = {key: (value - times(first).get(key, 0)) / (5 * more - few) for key, value in times(last).items()}
     nodes = 1.0
-    for axis in json.loads((HERE.parent / scene).read_text())["domain"]["nodes"]:
+    for axis in json.loads((folder / "run/scene.json").read_text())["domain"]["nodes"]:
         nodes *= axis
     # Of triangles and nodes, which are half as many.
     triples = re.findall(r'Dimensions="(\d+) 3"', (folder / "run/frames.xmf").read_text())
