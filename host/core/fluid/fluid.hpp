@@ -65,7 +65,10 @@ class Fluid final : public AnyFluid<Set::dimension> {
   /// Sets the force in active nodes to the body force.
   void clear_force(Range rows);
   /// Between two steps: there are no cells, until what they do to the fluid is set again.
-  void forget_cells() { state_.set_plain_rates(), state_.mask.clear(0, state_.lattice.rows()); }
+  void forget_cells() {
+    state_.set_plain_rates();
+    state_.mask.renew(0, state_.lattice.rows(), [](auto) {});
+  }
   /// Collision and streaming; leaves the velocity of active nodes in force(), halo included.
   void step(Range rows);
   /// In which order step() takes rows, and bands of rows are best taken: what the last step has touched last is still
