@@ -52,7 +52,8 @@ TEST_CASE("turned by an eighth of a turn the shear stress is half of the first n
   scene.domain.nodes = {100, 100};
   scene.domain.periodic[1] = true;
   scene.fluid.viscosity = 1;
-  scene.cell_types.push_back({.name = "a", .shape = scene::Circle{1}, .segments = 3, .interior_viscosity = 5});
+  scene::CellType& type = scene.cell_types.emplace_back();
+  type.name = "a", type.shape = scene::Circle{1}, type.segments = 3, type.interior_viscosity = 5;
   const auto turned = [&](double angle) {
     const std::complex<double> turn = std::polar(1.0, angle);
     core::Membranes m;
