@@ -108,7 +108,7 @@ def main():
         (folder / "scene.json").write_text(json.dumps(scene))
         steps = case.get("steps", whole.get("steps"))
         try:
-            done = subprocess.run([given.rouleau, "run", folder / "scene.json", "--out", folder / "run", "--quiet", "--force",
+            done = subprocess.run([given.rouleau, "run", folder / "scene.json", "--out", folder / "run", "--quiet", "--overwrite",
                                    *(["--max-steps", str(steps)] if steps else [])],
                                   capture_output=True, text=True, timeout=float(number) * SECONDS[unit])
         except subprocess.TimeoutExpired:
