@@ -341,7 +341,7 @@ struct Output {
   std::optional<double> checkpoint_seconds = 600;  ///< of wall-clock time between checkpoints; absent: none are written
   double aggregate_gap = 0.75e-6;                  ///< m; two cells are aggregated while their smallest gap is below
   std::optional<Profiles> profiles = {};
-  double bond_share = 0.05;  ///< two cells are joined from this share of the energy on that a whole face would win
+  double bond_share = 0.15;  ///< two cells are joined from this share of the energy on that a whole face would win
 
   [[nodiscard]] bool wants(std::string_view quantity) const {
     return std::find(quantities.begin(), quantities.end(), quantity) != quantities.end();

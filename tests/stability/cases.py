@@ -27,7 +27,10 @@ def put(scene, pointer, value):
     *above, last = [int(key) if key.isdigit() else key for key in pointer.strip("/").split("/")]
     for key in above:
         scene = scene.setdefault(key, {}) if isinstance(scene, dict) else scene[key]
-    scene[last] = value
+    if last == "-":
+        scene.append(value)
+    else:
+        scene[last] = value
 
 
 def rows_of(folder, table):
@@ -117,7 +120,7 @@ def main():
         fits = {"right": verdict == "right answer", "stops": verdict == "stopped with a reason"}.get(
             case.get("expect", "either"), verdict != "WRONG")
         well = well and fits
-        print(f"{case['name']}: {verdict}: {words}" + ("" if fits else f" (NOT AS EXPECTED: {case['expect']})"), flush=True)
+        print(f"{case['name']}: {verdict}: {words}" + ("" if fits else f" (NOT AS EXPECTED: {case.get('expect', 'either')})"), flush=True)
     return 0 if well else 1
 
 
