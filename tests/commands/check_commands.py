@@ -706,7 +706,7 @@ class Cells_that_nothing_attracts(Case):
                 self.assertIsNone(self.WORDS.search(said), said)
 
     def test_are_joined_where_a_well_is_between_them(self):
-        file = self.scene(stages=[{"name": "rest", "duration": "0.002 s"}], output={"cells": {"seconds": "0.0005 s"}, "aggregate_gap": "2 um"})
+        file = self.scene(stages=[{"name": "rest", "duration": "0.002 s"}], output={"cells": {"seconds": "0.0005 s"}, "aggregate_gap": "2 um", "bond_share": 0.05})
         result = self.rouleau.run("run", file, "--out", self.path / "run")
         self.assertIn("rouleau of 4 from the start; still whole at the end", result.stdout + result.stderr)
         summary = json.loads((self.path / "run/summary.json").read_text())
