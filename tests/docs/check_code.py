@@ -307,6 +307,7 @@ BLOCKS = [
     ("docs/scene.md", '{"name": "faster"', part_of_scene("stages")),
     ("docs/scene.md", '{"name": "shear"', part_of_scene("stages")),
     ("docs/scene.md", '{"name": "pull"', part_of_scene("stages")),
+    ("docs/scene.md", '{"name": "weaken"', part_of_scene("stages")),
     ("docs/scene.md", '{"between": ["rbc", "rbc"], "model": "morse"', part_of_scene("interactions")),
     ("docs/scene.md", '{"between": ["rbc", "wall"], "model": "repulsion"', part_of_scene("interactions")),
     ("docs/scene.md", '{"between": ["rbc", "self"], "model": "repulsion"', part_of_scene("interactions")),

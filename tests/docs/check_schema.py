@@ -51,7 +51,7 @@ OTHER = {
     "/numerics/area_correction": True, "/numerics/precision": "f32", "/numerics/coupling": "semi-implicit",
     "/cell_types/round/shape/circle/prestretch": 1.1, "/cells/0/angle": 1, "/cells/1/row/axis": "y", "/cells/1/row/angle": 1,
     "/cells/2/list/0/angle": 1, "/stages/0/start": "developed", "/stages/1/start": None, "/stages/2/start": None, "/output/fields/stride": 2, "/output/fields/precision": "f64",
-    "/output/fields/compression": 0, "/output/checkpoint": None, "/output/aggregate_gap": "3 um",
+    "/output/fields/compression": 0, "/output/checkpoint": None, "/output/aggregate_gap": "3 um", "/output/bond_share": 0.3,
     "/at_rest/displacement": None, "/at_rest/window": None, "/equilibrium/rate": None, "/equilibrium/window": None, "/checks/mach": None, "/checks/node_step": None,
     "/checks/area_drift": None, "/checks/stretch": None, "/checks/energy_growth": None, "/checks/every_steps": None,
 }

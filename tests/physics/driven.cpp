@@ -32,7 +32,7 @@ TEST_CASE("a developed pressure-driven flow stays the parabola that it was start
 
 TEST_CASE("profiles are those of Poiseuille's flow, and hold what the cells enclose", "[conservation]") {
   auto overrides = pressure_driven;
-  overrides.insert(overrides.end(), {"/stages/0/start=developed", R"(/output/cells={"seconds": 0.002})",
+  overrides.insert(overrides.end(), {"/stages/0/start=developed", R"(/output/cells={"seconds": 0.0005})",
                                      R"(/output/profiles={"axis": "y", "bins": 32})"});
   const bool with_cell = GENERATE(false, true);
   if (!with_cell) overrides.emplace_back("/cells=[]");

@@ -13,6 +13,7 @@ import copy
 import csv
 import json
 import math
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -107,11 +108,12 @@ def main():
         for pointer, value in {**whole.get("set", {}), **case.get("set", {})}.items():
             put(scene, pointer, value)
         folder = given.out / f"{given.file.stem}-{index}"
-        folder.mkdir(parents=True, exist_ok=True)
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
         (folder / "scene.json").write_text(json.dumps(scene))
         steps = case.get("steps", whole.get("steps"))
         try:
-            done = subprocess.run([given.rouleau, "run", folder / "scene.json", "--out", folder / "run", "--quiet", "--overwrite",
+            done = subprocess.run([given.rouleau, "run", folder / "scene.json", "--out", folder / "run", "--quiet",
                                    *(["--max-steps", str(steps)] if steps else [])],
                                   capture_output=True, text=True, timeout=float(number) * SECONDS[unit])
         except subprocess.TimeoutExpired:

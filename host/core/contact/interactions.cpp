@@ -316,10 +316,10 @@ void Interactions<3>::act(int cell, Surfaces& surfaces, const Scratch& scratch) 
   }
 }
 
-// In the order of the cells that they come from; each worker those on its share of the cells.
+// In the order of the cells that they come from; each worker those on the cells that it goes on with.
 template <>
 void Interactions<3>::take_reactions(Worker worker, Surfaces& surfaces) {
-  const Range own = worker.share(surfaces.cell_count());
+  const Range own = surfaces.numbers_of_known(worker);
   for (const int cell : surfaces.known_cells()) {
     for (const TouchedCell& touched : reactions_[cell]) {
       if (touched.cell < own.begin || touched.cell >= own.end || !surfaces.owns(touched.cell)) continue;

@@ -139,6 +139,15 @@ struct CellNodes {
   }
   /// The one of them at a place.
   [[nodiscard]] int known_at(int place) const { return part.empty() ? place : known[place]; }
+  /// Between which numbers a worker's known cells lie.
+  [[nodiscard]] Range numbers_of_known(Worker worker) const {
+    if (part.empty()) return worker.share(cell_count());
+    const Range share = worker.share(static_cast<int>(known.size()));
+    const auto number = [this](int place) {
+      return place < static_cast<int>(known.size()) ? known[place] : cell_count();
+    };
+    return {number(share.begin), number(share.end)};
+  }
   /// A worker's share of all nodes.
   [[nodiscard]] Range node_share(Worker worker) const {
     const Range share = worker.share(cell_count());
