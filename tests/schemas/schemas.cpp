@@ -294,7 +294,7 @@ TEST_CASE("the host and valijson accept and refuse the same documents by every s
   for (const auto& file : files_in(source / "tests/fuzz/corpus", false)) judge(file);
   CHECK(judged > 400);
   CHECK(too_long < judged / 50);
-  for (std::size_t i = 0; i < 6; ++i) {
+  for (std::size_t i = 0; i < 5; ++i) {
     INFO(all[i]->name << ": " << all[i]->accepted << " accepted, " << all[i]->refused << " refused");
     CHECK((all[i]->accepted > 0 && all[i]->refused > 0));
   }

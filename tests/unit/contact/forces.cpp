@@ -220,7 +220,8 @@ TEST_CASE("a strength is one value, a ramp or steps, and multiplies force and en
   CHECK(ramp.at(20) == 0.5);
   CHECK(steps.at(9) == 1);
   CHECK(steps.at(10) == 0.5);
-  CHECK(steps.at(29) == 0.5);
+  CHECK(steps.at(19) == 0.5);
+  CHECK(steps.at(29) == 0);
   CHECK(steps.at(30) == 0);
   CHECK(ramp.changes());
   CHECK_FALSE(Course{{0.3}}.changes());
