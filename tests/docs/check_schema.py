@@ -51,7 +51,7 @@ OTHER = {
     "/numerics/area_correction": True, "/numerics/precision": "f32", "/numerics/coupling": "semi-implicit",
     "/cell_types/round/shape/circle/prestretch": 1.1, "/cells/0/angle": 1, "/cells/1/row/axis": "y", "/cells/1/row/angle": 1,
     "/cells/2/list/0/angle": 1, "/stages/0/start": "developed", "/stages/1/start": None, "/stages/2/start": None, "/output/fields/stride": 2, "/output/fields/precision": "f64",
-    "/output/fields/compression": 0, "/output/checkpoint": None, "/output/aggregate_gap": "3 um", "/output/bond_share": 0.3,
+    "/output/fields/compression": 0, "/output/checkpoint": None, "/output/aggregate_gap": "3 um", "/output/bond_share": None,
     "/at_rest/displacement": None, "/at_rest/window": None, "/equilibrium/rate": None, "/equilibrium/window": None, "/checks/mach": None, "/checks/node_step": None,
     "/checks/area_drift": None, "/checks/stretch": None, "/checks/energy_growth": None, "/checks/every_steps": None,
 }
@@ -61,7 +61,7 @@ HEADER = {"/at_rest/displacement": ("0.01 um", r"displacement = 0\.01e-6;"), "/a
           "/checks/mach": (0.3, r"mach = 0\.3;"), "/checks/node_step": (0.5, r"node_step = 0\.5;"),
           "/checks/area_drift": (0.02, r"area_drift = 0\.02;"), "/checks/stretch": (5, r"stretch = 5;"),
           "/checks/energy_growth": (0.01, r"energy_growth = 0\.01;"), "/checks/every_steps": (200, r"every_steps = 200;"),
-          "/output/checkpoint": ({"seconds": 600}, r"checkpoint_seconds = 600;")}
+          "/output/bond_share": (0.15, r"bond_share = 0\.15;"), "/output/checkpoint": ({"seconds": 600}, r"checkpoint_seconds = 600;")}
 
 
 def resolved(rule):
