@@ -13,11 +13,9 @@ namespace rouleau::observe {
 
 namespace {
 
-void count_aggregates(const Aggregates& aggregates, Snapshot& snapshot) {
-  snapshot.aggregate_count = aggregates.count;
-  snapshot.aggregate_sizes = aggregate_sizes(aggregates.label);
-  snapshot.aggregate_size_number_mean = number_mean(snapshot.aggregate_sizes);
-  snapshot.aggregate_size_weight_mean = weight_mean(snapshot.aggregate_sizes);
+void count_sizes(const Aggregates& aggregates, std::map<int, int>& sizes, double& by_number, double& by_weight) {
+  sizes = aggregate_sizes(aggregates.label);
+  by_number = number_mean(sizes), by_weight = weight_mean(sizes);
 }
 
 /// What contacts there are, of whichever rank's cells.
@@ -36,7 +34,9 @@ ContactSnapshot in_si(const CellContact& c, double length) {
 template <int D>
 void describe_contacts(const std::vector<CellContact>& contacts, const Aggregates& aggregates, double length,
                        Snapshot& snapshot) {
-  count_aggregates(aggregates, snapshot);
+  snapshot.aggregate_count = aggregates.count;
+  count_sizes(aggregates, snapshot.aggregate_sizes, snapshot.aggregate_size_number_mean,
+              snapshot.aggregate_size_weight_mean);
   const auto count = static_cast<double>(contacts.size());
   snapshot.contacts_per_cell = 2 * count / static_cast<double>(aggregates.cells.size());
   if (!contacts.empty()) snapshot.contact_gap = 0;
@@ -86,9 +86,7 @@ void find_bonds(Snapshot& snapshot, const std::vector<core::PairEnergy>& halves,
   const Aggregates joined = find_aggregates(std::move(there), pairs);
   for (std::size_t k = 0; k < joined.label.size(); ++k) snapshot.cells[k].bonded = joined.label[k];
   snapshot.attracts = true;
-  snapshot.bonded_sizes = aggregate_sizes(joined.label);
-  snapshot.bonded_size_number_mean = number_mean(snapshot.bonded_sizes);
-  snapshot.bonded_size_weight_mean = weight_mean(snapshot.bonded_sizes);
+  count_sizes(joined, snapshot.bonded_sizes, snapshot.bonded_size_number_mean, snapshot.bonded_size_weight_mean);
 }
 
 template <int D>

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/lattice.hpp"
+
 namespace rouleau::observe {
 
 namespace {
@@ -19,8 +21,7 @@ struct Bins {
         wraps(scene.domain.periodic[1] && !radial),
         height(scene.domain.nodes[1]),
         depth(scene.domain.in_plane() ? 1 : scene.domain.nodes[2]),
-        width((radial ? *scene.domain.tube_radius / (scene.domain.size.x() / scene.domain.nodes[0]) : height) / count) {
-  }
+        width((radial ? *scene.domain.tube_radius / scene::lattice_spacing(scene) : height) / count) {}
 
   /// Of a place, whose lattice node 0 lies half a spacing from the edge; the last one of what lies beyond.
   [[nodiscard]] int at(double y, double z) const {
@@ -117,7 +118,7 @@ std::vector<double> velocity_profile(const std::vector<double>& rows, const scen
 }
 
 double place_of_bin(const scene::Scene& scene, int bin) {
-  return (bin + 0.5) * Bins(scene).width * scene.domain.size.x() / scene.domain.nodes[0];
+  return (bin + 0.5) * Bins(scene).width * scene::lattice_spacing(scene);
 }
 
 void ProfileHistory::follow(const Snapshot& snapshot) {

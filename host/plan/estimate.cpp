@@ -233,10 +233,8 @@ Estimate estimate(const Plan& plan) {
                           membrane_memory(scene);
   estimate.output = estimate_output(scene, plan.stages);
   if (scene.output.checkpoint_seconds) {  // of all nodes of the box, and places and velocities of membranes
-    double all = 1;
-    for (int axis = 0; axis < dimension; ++axis) all *= scene.domain.nodes[axis];
-    estimate.output.checkpoint_bytes =
-        all * velocities * word + membrane * dimension * (plan.viscosity_contrast ? 3 : 2) * sizeof(double);
+    estimate.output.checkpoint_bytes = scene.domain.node_count() * velocities * word +
+                                       membrane * dimension * (plan.viscosity_contrast ? 3 : 2) * sizeof(double);
   }
   estimate.wall_s += estimate.output.outputs * membrane * cost::of_membrane_node[dimension - 2].output;
   return estimate;

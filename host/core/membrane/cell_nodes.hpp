@@ -148,9 +148,9 @@ struct CellNodes {
     };
     return {number(share.begin), number(share.end)};
   }
-  /// A worker's share of all nodes.
+  /// The nodes of these, and of others between them.
   [[nodiscard]] Range node_share(Worker worker) const {
-    const Range share = worker.share(cell_count());
+    const Range share = numbers_of_known(worker);
     const auto first = [this](int cell) { return cell < cell_count() ? cells[cell].first : node_count(); };
     return {first(share.begin), first(share.end)};
   }
