@@ -104,7 +104,7 @@ TEST_CASE("aggregates live from the first output with their members to the first
   at(3, "rest", {{0, 1}, {1, 2}, {2, 3}});  // both pairs have grown
   at(4, "shear", {{0, 1}, {1, 2}});         // the four broke in the first second of the stage
   at(6, "shear", {{0, 1}});
-  at(7, "shear", {{0, 1}}, 1);  // cell 1 has left: that is no break-up
+  at(7, "shear", {}, 1);  // all others have left: that is no break-up
   const nlohmann::json lives = history.lifetimes();
   REQUIRE(lives.size() == 2);
   CHECK(lives[0]["stage"] == "rest");

@@ -10,6 +10,7 @@ namespace rouleau::conform {
 
 struct ProcessCounts {
   std::atomic<std::int64_t> allocations{0}, releases{0};  ///< by malloc and its kin, and by new
+  std::atomic<std::int64_t> clock_reads{0};               ///< by the C library's functions
 
   /// While `from_pool` is set, a model's memory is taken from this pool, with a guard behind each piece, and never
   /// given back to it: what is released cannot be accessed any more.

@@ -70,13 +70,14 @@ std::vector<Trial> some_trials(const Subject& subject, Random& random) {
   return trials(subject, random, subject.typical_setting(), 3);
 }
 
-/// Lets the model's function make no system call and read no clock, and counts what it allocates. As there is no way
-/// back, the thread ends after the call.
+/// Lets the model's function make no system call, and counts what it allocates and how often it asks for the time. Where
+/// the processor obeys (some virtual machines' do not), it may not read its own clock either. As there is no way back, the
+/// thread ends after the call.
 class QuietWatch : public CallWatch {
  public:
   std::atomic<bool> done{false};
   bool trapped = false;
-  std::int64_t allocations = 0;
+  std::int64_t allocations = 0, clock_reads = 0;
 
   void before() override {
     touch_thread_local_storage();
@@ -84,10 +85,13 @@ class QuietWatch : public CallWatch {
     prctl(PR_SET_TSC, PR_TSC_SIGSEGV);
 #endif
     trapped = limit_system_calls(Allowed::nothing);
-    allocations = process_counts != nullptr ? process_counts->allocations.load() : 0;
+    if (process_counts != nullptr) allocations = process_counts->allocations, clock_reads = process_counts->clock_reads;
   }
   void after() override {
-    if (process_counts != nullptr) allocations = process_counts->allocations - allocations;
+    if (process_counts != nullptr) {
+      allocations = process_counts->allocations - allocations;
+      clock_reads = process_counts->clock_reads - clock_reads;
+    }
     done = true;
     end_thread();
   }
@@ -104,7 +108,9 @@ Finding quiet(const Subject& subject) {
         call.watch = &watch;
         std::thread([&] { compute(subject, trial.instance, inputs, call); }).detach();
         while (!watch.done) std::this_thread::yield();
-        if (watch.allocations != 0) {
+        if (watch.clock_reads != 0) {
+          finding = Finding::failed("compute reads the clock");
+        } else if (watch.allocations != 0) {
           finding = Finding::at_most(static_cast<double>(watch.allocations), 0, "allocations of one call of compute");
         } else if (!watch.trapped || process_counts == nullptr) {
           finding = Finding::warned(watch.trapped ? "no system call; allocations are not counted in this build"
