@@ -11,7 +11,9 @@
 #include "plan/ranks/blocks.hpp"
 #include "plan/ranks/rank_costs.hpp"
 #include "plan/ranks/rank_times.hpp"
+#include "run/step_time.hpp"
 #include "scene_options.hpp"
+#include "threads.hpp"
 #include "units/units.hpp"
 
 namespace rouleau::command {
@@ -24,11 +26,13 @@ Prints, without a step: every conversion, dimensionless number and limit (value,
 computed, what is left out and why, and the estimated time, memory and output size. Plugins that the scene names are
 loaded and instances of them are made, so their code runs. With --ranks N also how the lattice would be cut for
 mpirun -n N, what each rank would compute, send and hold, how long a step would take, and how many ranks are fastest.
+With --measure N the time is that of the scene's own first steps by N threads, taken for a second and not kept.
 Where a run would be refused for its nodes or its memory, the plan is printed and ends with that error.
 
 Example:
   rouleau plan scenes/four-cells-shear.json
   rouleau plan scenes/four-cells-shear.json --set /numerics/density_factor=30000 --json
+  rouleau plan scenes/four-cells-shear.json --measure 2
   rouleau plan scenes/four-cells-shear.json --ranks 8
   rouleau plan scenes/four-cells-shear.json --ranks 8 --rank 3 --network "2 us,10 GB/s"
 )";
@@ -120,31 +124,51 @@ class PlannedRanks {
   plan::RankTimes times_;
 };
 
+std::string measured_in_words(const run::StepTime& time) {
+  return "Measured here, " + std::to_string(time.steps) + " steps by " + std::to_string(time.threads) +
+         (time.threads == 1 ? " thread: " : " threads: ") + plan::time_in_words(time.wall_s) + " in all, " +
+         number(1e3 * time.step_s, 3) + " ms a step and " + number(1e3 * time.output_s, 3) + " ms an output\n";
+}
+
 }  // namespace
 
 int plan_command(const std::vector<std::string>& arguments) {
   namespace options = boost::program_options;
   SceneOptions scene_options;
   bool json = false;
+  std::optional<int> threads;
   RankOptions rank_options;
   options::options_description description("options");
   options::positional_options_description positional;
   scene_options.add_to(description, positional);
-  description.add_options()("json", options::bool_switch(&json), "print JSON for programs");
+  description.add_options()("json", options::bool_switch(&json), "print JSON for programs")(
+      "measure", options::value<int>()->value_name("N")->notifier([&](int count) { threads = count; }),
+      "take steps for a second, by N threads, and plan with the time that they take");
   rank_options.add_to(description);
   if (!parse_command_line("plan", plan_help, arguments, description, positional)) return 0;
   rank_options.check();
+  if (threads) check_threads("--measure", *threads);
 
   const PlannedScene planned(scene_options);
+  std::optional<run::StepTime> measured;
+  if (threads) {
+    const int useful = useful_threads(planned.read.scene, *threads);
+    require_startable(planned, nullptr, 1);
+    require_threads("--measure", useful);
+    measured = run::measure_steps(planned.plan, useful);
+  }
   std::optional<PlannedRanks> ranks;
   if (rank_options.ranks) ranks.emplace(rank_options, planned.plan);
   if (json) {
     nlohmann::json object = plan::to_json(planned.plan, planned.report);
     if (ranks) object["ranks"] = ranks->json();
+    if (measured) object["estimate"]["measured"] = *measured;
     // Names of folders need not be UTF-8.
     std::cout << object.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
   } else {
-    std::cout << folded(plan::to_text(planned.plan, planned.report) + (ranks ? ranks->text() : ""), text_width());
+    std::cout << folded(plan::to_text(planned.plan, planned.report) + (ranks ? ranks->text() : "") +
+                            (measured ? measured_in_words(*measured) : ""),
+                        text_width());
   }
   std::cout << std::flush;
   // What a run here would be refused for is; of several ranks nobody knows here what memory their machines have.

@@ -3,10 +3,7 @@
 #include <csignal>
 #include <filesystem>
 #include <iostream>
-#include <latch>
 #include <optional>
-#include <system_error>
-#include <thread>
 #include <vector>
 
 #include "accuracy/measure_errors.hpp"
@@ -23,6 +20,7 @@
 #include "run/simulation.hpp"
 #include "run_words.hpp"
 #include "scene_options.hpp"
+#include "threads.hpp"
 #include "trial/trial.hpp"
 
 namespace rouleau::command {
@@ -94,22 +92,6 @@ void check_max_steps(long steps) {
                                     ": wants a number of steps, zero or more; leave it out for a run without limit");
 }
 
-/// Throws where the system refuses so many threads: OpenMP's library would end the program.
-void require_threads(int threads) {
-  std::latch all_asked(1);
-  std::vector<std::jthread> others;
-  try {
-    for (int k = 1; k < threads; ++k) others.emplace_back([&] { all_asked.wait(); });
-  } catch (const std::system_error& error) {
-    all_asked.count_down();
-    throw Error(Cause::input_output,
-                "--threads " + std::to_string(threads) + ": the system grants no more than " +
-                    std::to_string(others.size() + 1) + ": " + error.code().message(),
-                {"take fewer, or raise the limit of processes (ulimit -u) or of memory (ulimit -v)"});
-  }
-  all_asked.count_down();
-}
-
 /// What the command line asks for.
 struct Request {
   SceneOptions scene;
@@ -118,8 +100,6 @@ struct Request {
   ErrorBarChoice bars;
   run::RunOptions run;
 };
-
-int processors() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
 
 /// False: help was asked for, and shown.
 bool read_request(const std::vector<std::string>& arguments, Request& request) {
@@ -154,11 +134,7 @@ bool read_request(const std::vector<std::string>& arguments, Request& request) {
     throw Error(Cause::bad_input, "--error-bar and --no-error-bar: give one of them");
   }
   if (run.force && !resume) throw Error(Cause::bad_input, "--force: only together with --resume");
-  if (run.threads < 1 || run.threads > 1024) {
-    throw Error(Cause::bad_input, "--threads " + std::to_string(run.threads) +
-                                      ": wants a number from 1 to 1024 (this machine has " +
-                                      std::to_string(processors()) + " processors)");
-  }
+  check_threads("--threads", run.threads);
   return true;
 }
 
@@ -166,8 +142,7 @@ bool read_request(const std::vector<std::string>& arguments, Request& request) {
 void prepare(Request& request, const TimeLimit& limit, std::optional<PlannedScene>& planned) {
   planned.emplace(request.scene);  // before a directory is made
   const auto& [scene, numerics_choice] = planned->read;
-  const double rows = scene.domain.node_count() / scene.domain.nodes[0];
-  request.run.threads = static_cast<int>(std::min<double>(request.run.threads, std::max(1.0, rows / 4)));
+  request.run.threads = useful_threads(scene, request.run.threads);
   const Crew* const crew = Crew::present();
   const plan::PlanReport& report = planned->report;
   require_startable(*planned, planned->blocks ? &*planned->blocks : nullptr, crew != nullptr ? crew->ranks() : 1);
@@ -280,7 +255,7 @@ int run_command(const std::vector<std::string>& arguments) {
   }
   if (!planned) return exit_code::done;  // help was asked for
   require_same_run(arguments, *planned);
-  require_threads(request.run.threads);
+  require_threads("--threads", request.run.threads);
   request.run.interrupted = &listen_for_interruption(*limit);
   if (crew != nullptr && !crew->first()) return follow_first_rank(request.scene, *planned, request.run);
   const int code = lead(request, *planned, *limit);

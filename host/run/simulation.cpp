@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <iostream>
 #include <optional>
 #include <string>
 #include <type_traits>
 
+#include "base/stopwatch.hpp"
 #include "checkpoint.hpp"
 #include "checkpoint_match.hpp"
 #include "core/membrane/motion.hpp"
@@ -26,9 +26,6 @@
 namespace rouleau::run {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// How many steps ranks take from one time that they ask each other whether somebody wants them to attend to the next.
 constexpr long steps_between_questions = 16;
@@ -112,7 +109,7 @@ class Simulation final : StepHooks {
   }
 
   void run_stages() {
-    auto start = Clock::now();
+    Stopwatch watch;
     typename Engine<D>::Start from = find_start();
     const bool resumes = from.state.has_value();
     if (!resumes) log("started", {{"title", scene().title}, {"threads", options_.threads}, {"ranks", summary_.ranks}});
@@ -120,10 +117,10 @@ class Simulation final : StepHooks {
     engine_.begin(std::move(from));
     if (!resumes) start_stage();
     for (;;) {
-      balance_.made(seconds_since(start));
+      balance_.made(watch.seconds());
       run_stage();
       if (stopped() || course_.is_last()) return;
-      start = Clock::now();
+      watch = {};
       engine_.begin_stage(++state_.stage);
       start_stage();
     }
@@ -138,7 +135,7 @@ class Simulation final : StepHooks {
   void run_stage() {
     stage_.emplace(Stage{{scene().output.cells, setting(), true}, {scene().output.fields, setting(), false}});
     for (const std::string& pass : solver().passes().names) state_.costs.add(pass, 0, 0);
-    clock_ = Clock::now();
+    clock_ = {};
     balance_.begin(computed_s());
     while (stage_->ended == Ending::none) {
       stepper_.begin(state_.stage_step);
@@ -161,8 +158,8 @@ class Simulation final : StepHooks {
 
   /// The time since this was last called goes to the run and the stage.
   void take_time() {
-    const double passed = seconds_since(clock_);
-    clock_ = Clock::now();
+    const double passed = clock_.seconds();
+    clock_ = {};
     state_.wall += passed;
     state_.stage_wall += passed;
   }
@@ -185,9 +182,9 @@ class Simulation final : StepHooks {
 
   /// All ranks, between two steps, whose messages have been taken: other blocks for the same state.
   void cut_again() {
-    const auto start = Clock::now();
+    const Stopwatch watch;
     engine_.cut_again(state_.stage, state_.stage_step, balance_.seconds(ranks(), computed_s()));
-    const double seconds = seconds_since(start);
+    const double seconds = watch.seconds();
     state_.costs.add("cut", seconds, 1);
     log("cut",
         {{"step", state_.steps}, {"slowest_over_mean", balance_.slowest_over_mean()}, {"wall_s_of_cut", seconds}});
@@ -218,16 +215,16 @@ class Simulation final : StepHooks {
     const bool ends = stage_->due != Ending::none && (course_.is_last() || stops);
     if (core::any(ranks(), checkpoints_.due()) || (checkpoints_.wanted() && ends)) {
       take_time();
-      const auto start = Clock::now();
+      const Stopwatch watch;
       checkpoints_.write(plan_, options_.threads, state_, solver());
-      state_.costs.add("checkpoint", seconds_since(start), 1);
+      state_.costs.add("checkpoint", watch.seconds(), 1);
     }
     return true;
   }
 
   /// Outputs, checks, and whether the stage ends here.
   bool after_forces(long step, bool) override {
-    const auto start = Clock::now();
+    const Stopwatch watch;
     course_.count_to(step);
     solver().end_messages();
     if (fails(monitor::check_nodes(solver(), scene().checks.node_step, setting()))) return false;
@@ -254,7 +251,7 @@ class Simulation final : StepHooks {
           observe::Observer::momentum_residual(
               engine_.cells(), tasks != nullptr ? tasks->force_from_outside() : std::array<double, 3>{}, ranks()));
       if (ranks().first()) progress_.update(progress());
-      state_.costs.add("observe and check", seconds_since(start), 1);
+      state_.costs.add("observe and check", watch.seconds(), 1);
     }
     course_.look(solver(), output_due);
     const long check = (step / scene().checks.every_steps + 1) * scene().checks.every_steps;
@@ -370,7 +367,7 @@ class Simulation final : StepHooks {
   Stepper stepper_{*this};
   Balance balance_;
   std::optional<Stage> stage_;  ///< the present one
-  Clock::time_point clock_;
+  Stopwatch clock_;
 };
 
 }  // namespace

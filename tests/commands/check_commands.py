@@ -314,6 +314,17 @@ class Commands_do_what_they_say(Case):
             self.assertIn(key, plan)
         self.assertAlmostEqual(plan["dimensionless"]["reynolds_physical"], 2.548e-4, delta=1e-6)
 
+    def test_plan_measures_the_steps_of_a_scene_and_keeps_nothing(self):
+        said = json.loads(self.rouleau.run("plan", SCENE, "--measure", "2", "--json").stdout)["estimate"]
+        measured = said["measured"]
+        self.assertEqual(measured["threads"], 2)
+        self.assertGreaterEqual(measured["steps"], 3)
+        self.assertGreater(min(measured["step_s"], measured["output_s"]), 0)
+        whole = said["steps_at_most"] * measured["step_s"] + said["output"]["outputs"] * measured["output_s"]
+        self.assertAlmostEqual(measured["wall_s"] / whole, 1)
+        self.assertIn("steps by 1 thread: ", self.rouleau.run("plan", SCENE, "--measure", "1").stdout)
+        self.assertIn("--measure 0: wants a number", self.rouleau.run("plan", SCENE, "--measure", "0").stderr)
+
     def test_plan_says_what_each_of_several_ranks_would_do_and_how_long_a_step_takes(self):
         words = ["plan", SCENE, "--ranks", 6, "--network", "1 us,5 GB/s,0.25 us", "--step", "1 ms"]
         ranks = json.loads(self.rouleau.run(*words, "--json").stdout)["ranks"]
