@@ -95,7 +95,7 @@ void RheologyHistory::follow(const Snapshot& snapshot) {
   if (snapshot.cells.size() <= most_cells_remembered) {
     for (const CellSnapshot& cell : snapshot.cells) {
       now.cell.push_back(cell.cell);
-      now.label.push_back(cell.aggregate);
+      now.label.push_back(cell.bonded);
       now.marker.push_back(cell.tank_treading_angle);
       now.axis.push_back(cell.angle);
     }

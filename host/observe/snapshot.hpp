@@ -24,7 +24,7 @@ struct CellSnapshot {
   double wall_gap;     ///< m, to the nearer wall; NaN without walls
   int aggregate;       ///< label: smallest index of a cell of the aggregate it belongs to
   bool through_image;  ///< its aggregate is held together by a contact across the periodic boundary
-  int bonded;          ///< likewise a label, of the cells that bonds join (Snapshot::bonds)
+  int bonded;          ///< likewise a label, of the cells that bonds join (Snapshot::bonds); its own where none does
   double stretch_min, stretch_max;  ///< of its segments or edges: length over rest length
   double length_along_force = std::numeric_limits<double>::quiet_NaN();  ///< m; NaN: none acts on the cell
   double width_across_force = length_along_force;                        ///< m, likewise

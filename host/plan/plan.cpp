@@ -52,6 +52,16 @@ void check_equilibria(const Models& models) {
   }
 }
 
+/// A stage that ends once cells have parted needs a well that joins them.
+void check_partings(const Plan& plan) {
+  const auto stage = std::find_if(plan.stages.begin(), plan.stages.end(),
+                                  [](const scene::StageSetting& s) { return s.stage->until_parted; });
+  if (stage == plan.stages.end() || !attracting_types(plan, plan.facts.wells).empty()) return;
+  throw Error(Cause::bad_input, plan.scene->place(stage->stage->pointer + "/until"),
+              "\"parted\" never comes, since no interaction attracts the cells to each other",
+              {"add an interaction with a well between two cell types, or leave until out"});
+}
+
 void choose_coupling(Plan& plan) {
   const std::string& wanted = plan.scene->numerics.coupling;
   if (!plan.has_cells) {
@@ -95,6 +105,7 @@ Plan make_plan(const scene::Scene& scene, const plugin::Catalog& catalog, std::o
   faults.raise();
   make_models(plan);
   plan.facts = find_facts(plan);
+  check_partings(plan);
   choose_coupling(plan);
   return plan;
 }

@@ -114,9 +114,6 @@ Json to_json(const Summary& summary) {
   result["rheology"] = summary.rheology;
   if (!summary.cell_traffic.is_null()) result["cell_traffic"] = summary.cell_traffic;
   if (!summary.plan.attracting.empty()) result["lifetimes"] = summary.lifetimes;
-  if (summary.plan.attracting.empty()) {
-    for (Json& stage : result["rheology"]) stage["dissociation"] = Json::array();  // what was not joined does not part
-  }
   result["stages"] = summary.stages;
   result["resumed"] = summary.resumed;
   return result;

@@ -3,6 +3,9 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
+
+#include "observe/rheology_history.hpp"
 
 using namespace rouleau;
 using namespace rouleau::observe;
@@ -57,4 +60,30 @@ TEST_CASE("the smaller membrane of two counts, and where no depth is known close
   CHECK(s.contacts[1].bond_share == Approx(0.2));
   CHECK(std::isnan(s.contacts[0].bond_share));
   CHECK(s.bonded_sizes == std::map<int, int>{{2, 2}});
+}
+
+TEST_CASE("a pair has parted once it has too little of the well's energy, near or far") {
+  struct Moment {
+    double gap, share;
+    bool parted;
+  };
+  RheologyHistory history;
+  for (const auto& [gap, share, parted] : std::vector<Moment>{{0.5e-6, 0.28, false},
+                                                              {0.9e-6, 0.2, false},   // far, and still joined
+                                                              {0.5e-6, 0.14, true},   // near: the cells slide
+                                                              {0.5e-6, 0.16, false},  // and come back
+                                                              {2e-6, 0, true}}) {
+    Snapshot s = four_cells();
+    s.stage = 0;
+    if (gap < 0.75e-6) s.contacts = {{0, 1, {0, 0, 0}, gap}};
+    for (CellSnapshot& cell : s.cells) {
+      cell.bonded = cell.cell;
+      cell.aggregate = gap < 0.75e-6 && cell.cell == 1 ? 0 : cell.cell;
+    }
+    find_bonds(s, {{0, 1, {0, 0}, -share}}, {{{"rbc", "rbc"}, 1e-7}}, 0.15, 1e-12);
+    history.follow(s);
+    CAPTURE(gap, share);
+    CHECK(history.parted(0) == parted);
+  }
+  CHECK(history.stages()[0]["dissociation"][0]["members"] == std::vector<int>{0, 1});
 }

@@ -15,7 +15,7 @@ using namespace rouleau::observe;
 
 namespace {
 
-/// A snapshot of as many cells as there are labels.
+/// A snapshot of as many cells as there are labels of what bonds join. All are close to each other.
 Snapshot at(int stage, double strain, double time, const std::vector<int>& label) {
   Snapshot s;
   s.stage = stage;
@@ -28,7 +28,7 @@ Snapshot at(int stage, double strain, double time, const std::vector<int>& label
   for (const int l : label) {
     CellSnapshot cell{};
     cell.cell = static_cast<int>(s.cells.size());
-    cell.aggregate = l;
+    cell.bonded = l;
     s.cells.push_back(cell);
   }
   return s;

@@ -126,3 +126,21 @@ TEST_CASE("parameters that a model refuses are an error at its place in the scen
     CHECK(std::string(error.what()).find("no well to regularise; take the model \"repulsion\"") != std::string::npos);
   }
 }
+
+TEST_CASE("a stage that is to end once cells have parted is refused where nothing joins them") {
+  const std::string file = scenes + "/blood/pair-2d.json";
+  CHECK(make_plan(read_scene(file, {}), plugins()).stages.at(1).stage->until_parted);
+  for (const char* without :
+       {"/interactions=[]", "/interactions/0/parameters/depth=0", R"(/interactions/0/between=["rbc", "wall"])"}) {
+    CAPTURE(without);
+    const Scene scene = read_scene(file, {without});
+    try {
+      make_plan(scene, plugins());
+      FAIL("it would wait for what never comes");
+    } catch (const Error& error) {
+      CHECK(error.cause() == Cause::bad_input);
+      CHECK(error.place().pointer == "/stages/1/until");
+      CHECK(std::string(error.what()).find("no interaction attracts the cells") != std::string::npos);
+    }
+  }
+}
