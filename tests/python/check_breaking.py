@@ -1,6 +1,7 @@
 """rouleau.break_up: a stress that is known is closed in on, what never parts or never was together is refused."""
 
 import json
+import math
 import pathlib
 import types
 import unittest
@@ -64,6 +65,10 @@ class BreakUp(Case):
                 self.assertEqual(len(found.runs), len(fake.stages))
                 self.assertEqual([stage["name"] for stage in fake.stages[0]], ["rest", "shear"])
                 self.assertEqual(fake.stages[0][1]["density_factor"], 77)
+                alone = self.found(Fake(lambda rate, at=threshold: rate >= at), tolerance=0.04, most="70 1/s", ramp=None)
+                self.assertLessEqual(abs(alone.shear_rate_per_s - threshold), alone.bar_Pa / VISCOSITY * (1 + 1e-9))
+                self.assertTrue(math.isnan(alone.ramp_stress_Pa))
+                self.assertEqual(set(alone.runs["kind"]), {"step"})
 
     def test_rates_that_hold_above_one_that_parts_are_within_the_bar(self):
         found = self.found(Fake(lambda rate: 9 < rate < 11 or rate > 18, ramp=30.0))
@@ -84,6 +89,8 @@ class BreakUp(Case):
             self.found(diverged)
         with self.assertRaisesRegex(rouleau.Error, "stages.0.duration would be lost"):
             self.found(Fake(lambda _: True), **{"stages.0.duration": "1 s"})
+        with self.assertRaisesRegex(rouleau.Error, "nothing parts within a strain of 15"):
+            self.found(Fake(lambda _: False), ramp=None)
         with self.assertRaisesRegex(rouleau.Error, "tolerance 2"):
             self.found(Fake(lambda _: True), tolerance=2)
 
