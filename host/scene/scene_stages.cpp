@@ -401,6 +401,10 @@ Output read_output(const SceneFields& fields, const std::vector<Stage>& stages, 
   fields.attempt([&] {
     if (!fields.has("/output/profiles")) return;
     output.profiles = {fields.at("/output/profiles/axis") == "r", fields.value_or("/output/profiles/bins", 20)};
+    if (const char axis = axis_names[domain.flow_axis()]; axis != 'x')
+      fields.refuse("/output/profiles", std::string("profiles are of the velocity along x, and openings make the fluid "
+                                                    "flow along ") +
+                                            axis + "\nput the openings at the ends of x, or leave output.profiles out");
     if (output.profiles->radial != domain.tube_radius.has_value() || domain.has_shapes())
       fields.refuse("/output/profiles/axis",
                     domain.has_shapes() ? "walls of other shapes have no profile\nleave output.profiles out"
