@@ -788,6 +788,18 @@ class Two_runs(PageCase):
         self.assertIn("Dimensionless, adhesion number", text)
         self.assert_sound(page)
 
+    def test_have_one_scale_of_colours(self):
+        page = self.open(folder / "both.html")
+        scales = page.run("data.runs.map(run => run.outlines.tension.scale_N_per_m)")
+        self.assertNotEqual(*scales)
+        one, other = page.run("data.runs.map(run => cellColours(run, data.runs)).map(({tension, speed, deformation}) => [tension, speed, deformation].map(c => c.scale.ends))")
+        self.assertEqual(one, other)
+        self.assertEqual(*page.run(f"data.runs.map(run => cellColours(run, data.runs).tension.tension({min(scales) / 2} / run.outlines.tension.scale_N_per_m))"))
+        page.run("(() => { const s = document.querySelector(\"select[aria-label='Cells by']\"); s.value = 'tension'; s.dispatchEvent(new Event('change')); })()")
+        one, other = page.run("[...document.querySelectorAll('.bar.cells')].map(bar => bar.textContent)")
+        self.assertIn("Membrane tension", one)
+        self.assertEqual(one, other)
+
     def test_are_compared_over_the_time_where_that_is_chosen(self):
         page = self.open(folder / "both.html")
         self.assertEqual(page.run("[...document.querySelector('select[aria-label=\"Horizontal axis\"]').options].map(o => o.value)"), ["strain", "time_s"])

@@ -84,6 +84,7 @@ class Every_page_on_every_screen(PageCase):
                         page = self.open(file, screen, scheme)
                         self.assertIn(json.loads((file.parent / f"{file.stem}.json").read_text())["title"], self.text(page, "h1"))
                         self.assert_sound(page, size["width"])
+                        self.assertEqual(page.run("[...document.querySelectorAll('.stacked td')].filter(td => td.scrollWidth > td.clientWidth + 1).map(td => td.textContent)"), [])
                         if SHOTS:
                             SHOTS.mkdir(parents=True, exist_ok=True)
                             (SHOTS / f"{name}-{screen}-{scheme}.png").write_bytes(base64.b64decode(page.screenshot()))
@@ -340,6 +341,9 @@ class The_page_of_limits(PageCase):
         words = self.text(page, ".status")
         self.assertIn("9 combinations: 1 is stable throughout, 1 fails everywhere, 7 have an edge.", words)
         self.assertIn("First to fail: ", words)
+        legend = self.text(page, ".legend.map")
+        for reason in ("node step", "area loss", "timed out"):
+            self.assertIn(f"fails: {reason}", legend)
 
     def test_has_a_blue_for_stable_that_no_eye_takes_for_a_failure(self):
         for scheme in ("light", "dark"):

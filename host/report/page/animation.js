@@ -46,7 +46,7 @@ const drivenAlong = run => Math.sign((run.summary?.rheology ?? []).map(stage => 
 class Animation {
   constructor(parent, timeline, run, view, section = null) {
     const data = timeline.runs[run];
-    Object.assign(this, {timeline, run, data, view, section, outlines: section ?? (data.outlines && new Outlines(data.outlines)), fields: data.fields && new Fields(data), colours: cellColours(data), stages: stagesOf(data), zoom: 1});
+    Object.assign(this, {timeline, run, data, view, section, outlines: section ?? (data.outlines && new Outlines(data.outlines)), fields: data.fields && new Fields(data), colours: cellColours(data, timeline.runs), stages: stagesOf(data), zoom: 1});
     [this.lx, this.ly] = data.domain.size_um;
     this.centre = [this.lx / 2, this.ly / 2];
     this.walls = !data.domain.periodic[1];

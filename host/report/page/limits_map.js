@@ -147,7 +147,7 @@ class LimitsMap {
 function mapLegend(rows) {
   const key = (mark, text) => element("span", {class: "key"}, mark, text), box = (name, look = {}) => element("svg", {width: 22, height: 14, "aria-hidden": "true"}, element("rect", {x: 1, y: 1, width: 20, height: 12, class: name, ...look}));
   const tick = d => element("svg", {width: 14, height: 14, "aria-hidden": "true"}, element("path", {d, class: "trial"}));
-  const reasons = [...new Set(rows.flatMap(row => [row.above, row.below]).filter(edge => edge?.failure).map(edge => reasonOf(edge.failure)))];
-  return element("div", {class: "legend map"}, key(box("stable"), "stable"), key(box("open"), "not known: between stable and unstable"), ...reasons.map(reason => key(swatch(reason), `fails: ${reasonWords(reason)}`)),
+  const failures = rows.flatMap(row => [row.above, row.below]).filter(edge => edge?.failure).map(edge => edge.failure), looks = grouped(failures, reasonOf);
+  return element("div", {class: "legend map"}, key(box("stable"), "stable"), key(box("open"), "not known: between stable and unstable"), ...[...looks].map(([look, alike]) => key(swatch(look), `fails: ${[...new Set(alike.map(failure => reasonWords(failure.reason ?? "")))].join(", ")}`)),
     key(tick("M7 1V13"), "tried, stable"), key(tick("M3 3L11 11M3 11L11 3"), "tried, failed"));
 }

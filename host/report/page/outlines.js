@@ -114,8 +114,8 @@ function aggregateTones(aggregates) {
 
 const percentile = (values, share) => { const sorted = values.filter(v => v !== null).sort((a, b) => a - b); return sorted[Math.round(share * (sorted.length - 1))] ?? 0; };
 
-/// What colours the cells of one run can have: name -> {title, tone (a style's name) or colour of a cell, bar}.
-function cellColours(run) {
+/// What colours the cells of one run can have: name -> {title, tone (a style's name) or colour of a cell, bar}. A colour means the same in all `runs` of a page.
+function cellColours(run, runs = [run]) {
   const {cells} = run, colours = {}, tonesOf = cells && aggregateTones(cells.aggregate);
   if (!run.outlines && !run.surfaces) return colours;
   // In space one cell hides another: they look as they do under a microscope until something else is asked for.
@@ -135,12 +135,12 @@ function cellColours(run) {
       const [at, then] = [a, b].map(output => cells[name][cell][output]), from = at ?? then, to = then ?? at;
       return from === null || to === null ? "#888" : rampColour(rampStops.cividis, ((from + share * (to - from)) - low) / (high - low || 1));
     }}, {title: `${spelled(title)}${unit}`, stops: rampStops.cividis, ends: [format(low, 3), format((low + high) / 2, 3), `≥ ${format(high, 3)}`]});
-    const deformation = cells.deformation?.flat() ?? [], speeds = cells.speed_um_per_s?.flat() ?? [];
+    const [deformation, speeds] = ["deformation", "speed_um_per_s"].map(name => cells[name] ? runs.flatMap(other => other.cells?.[name]?.flat() ?? []) : []);
     if (deformation.some(v => v !== null)) colours.deformation = ranged("deformation", "deformation", "", percentile(deformation, .01), percentile(deformation, .99));
     if (speeds.some(v => v !== null)) colours.speed = ranged("speed_um_per_s", "speed of the cell", ", µm/s", 0, percentile(speeds, .99));
   }
-  const scale = run.outlines?.tension?.scale_N_per_m || run.surfaces?.tension?.scale_N_per_m;
-  if (scale) colours.tension = withScale({title: "membrane tension", tension: share => rampColour(rampStops.tension, (share + 1) / 2), tone: () => "--single"},
+  const tensionOf = ({outlines, surfaces}) => outlines?.tension?.scale_N_per_m || surfaces?.tension?.scale_N_per_m || 0, scale = tensionOf(run) && Math.max(...runs.map(tensionOf)), own = tensionOf(run) / scale;
+  if (scale) colours.tension = withScale({title: "membrane tension", tension: share => rampColour(rampStops.tension, (own * share + 1) / 2), rgb: share => rampRgb(rampStops.tension, (own * share + 1) / 2), tone: () => "--single"},
     {title: "Membrane tension, µN/m", stops: rampStops.tension, ends: [`≤ ${format(-scale * 1e6, 3)}`, "0", `≥ ${format(scale * 1e6, 3)}`]});
   colours.grey = {title: "grey", tone: () => "--single", bar: () => []};
   return colours;

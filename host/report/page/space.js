@@ -16,7 +16,7 @@ class SpaceView {
   static arrows = 14;
   constructor(parent, timeline, run, view, surfaces) {
     const data = timeline.runs[run], {domain} = data;
-    Object.assign(this, {timeline, run, data, view, surfaces, places: surfaces.placesOf(data), colours: cellColours(data), fields: data.fields && new Fields(data), box: domain.size_um, ly: domain.size_um[1], stages: stagesOf(data),
+    Object.assign(this, {timeline, run, data, view, surfaces, places: surfaces.placesOf(data), colours: cellColours(data, timeline.runs), fields: data.fields && new Fields(data), box: domain.size_um, ly: domain.size_um[1], stages: stagesOf(data),
       periodic: domain.periodic, cut: {axis: null, share: .5}});
     // A periodic box that is shorter than it is high is shown as often as makes sense of it.
     const [x, y, z] = this.box, high = Math.max(y, z);
@@ -161,7 +161,7 @@ class SpaceView {
       if (Number.isNaN(nodes[3 * surfaces.first[own]])) continue;
       const cell = this.places[own];
       if (tension && this.view.cell !== cell) {
-        for (let i = surfaces.first[own]; i < surfaces.first[own + 1]; ++i) tones.data.set(rampRgb(rampStops.tension, (tension[i] + 1) / 2), 3 * i);
+        for (let i = surfaces.first[own]; i < surfaces.first[own + 1]; ++i) tones.data.set(colour.rgb(tension[i]), 3 * i);
         continue;
       }
       const rgb = rgbOf(this.view.cell === cell ? css("--text") : colour?.colour ? colour.colour(cell, between) : css(colour ? colour.tone(cell, between) : "--single"));

@@ -14,7 +14,7 @@ function showReferences(view) {
   if (without.size) page.append(note(`Without a limit: ${[...without].map(([why, rows]) => `${why} (${rows.length} ${rows.length === 1 ? "method" : "methods"})`).join("; ")}.`));
   if (methods.length) page.append(element("h3", {}, "Limit of each method"), table([{title: "Method", value: r => labelWords(r.method ?? {}) || "all points"}, {title: "Quantity", key: "quantity"},
     {title: "Observed order", key: "order", number: true, value: r => format(r.order, 3)}, {title: "Limit", number: true, value: r => withUnit(r.limit, r.unit, 6), sort: r => r.limit},
-    {title: "Uncertainty", number: true, value: r => withUnit(r.uncertainty, r.unit, 2), sort: r => r.uncertainty}, {title: "Remark", value: r => r.why_not ?? ""}], methods, {sortable: true}));
+    {title: "Uncertainty", number: true, value: r => withUnit(r.uncertainty, r.unit, 2), sort: r => r.uncertainty}, {title: "Remark", value: r => r.why_not ?? ""}], methods, {sortable: true, stacked: true}));
 }
 
 /// The table of points for the quantity that is shown, made anew with every other choice of it.
@@ -71,7 +71,7 @@ function showKnobs(view) {
     const rows = all[drawn.name] ?? [], factor = (key, sign) => ({number: true, value: r => typeof r[key] === "number" ? `${sign} ${format(r[key], 3)}` : "–", sort: r => r[key]});
     box.replaceChildren(rows.length ? table([{title: "Setting", key: "axis"}, {title: "From", key: "from"}, {title: "To", key: "to"}, {title: "With", value: r => labelWords(r.fixed ?? {})},
       {title: "Error", ...factor("error_factor", "÷")}, {title: "Time", ...factor("time_factor", "×")}, {title: "Gain", number: true, value: r => r.free ? "free" : format(r.gain, 3), sort: r => r.free ? Infinity : r.gain}],
-      rows.slice(0, most), {sortable: true}) : note("No two points differ in one setting alone and have both an error."),
+      rows.slice(0, most), {sortable: true, stacked: true}) : note("No two points differ in one setting alone and have both an error."),
       note(`What a change of one setting does to ${theError(drawn.name)} and to the time, all else being equal; most gain first` + (rows.length > most ? `, ${most} of ${rows.length} (study.json has all). ` : ". ") +
         "Gain: by how many powers of ten the error falls when the time grows tenfold; free: the better setting is not the slower one."));
   });
