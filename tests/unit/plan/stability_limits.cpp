@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "plan/limit_list.hpp"
 #include "plan/limits.hpp"
 #include "plan/plan.hpp"
 #include "plan/read_scene.hpp"
@@ -345,4 +346,17 @@ TEST_CASE("plan knows how thin the fluid inside cells may be on the lattice wher
   CHECK(margin({thin, corrected, "/numerics/tau=2"}) > 1);
   CHECK_FALSE(margin({thin}));       // the plain scheme bore a hundredth
   CHECK_FALSE(margin({corrected}));  // more viscous than the plasma
+}
+
+TEST_CASE("a value at its limit is not beyond it, however it was rounded") {
+  LimitList limits;
+  limits.above("radius", 2e-6 / (124e-6 / 620), 10, "");  // 9.999999999999998
+  limits.below("Mach number", 0.1 * (1 + 1e-15), 0.1, "");
+  limits.above("radius below it", 9.9999, 10, "");
+  const std::vector<Limit> found = std::move(limits).sorted();
+  REQUIRE(found.size() == 3);
+  CHECK(found[0].name == "radius below it");
+  CHECK(found[0].margin < 1);
+  CHECK(found[1].margin == 1);
+  CHECK(found[2].margin == 1);
 }
