@@ -37,6 +37,7 @@ Rows File::begin(const std::string& path, const std::vector<hsize_t>& shape, boo
 }
 
 void Rows::append(const void* data, std::size_t count) {
+  if (count == 0) return;  // behind the last row, too
   const auto* rows = static_cast<const std::byte*>(data);
   const auto keep = [&](std::size_t n) {
     waiting_.insert(waiting_.end(), rows, rows + n * bytes_of_row_);

@@ -13,7 +13,7 @@ namespace rouleau::core {
 namespace {
 
 /// What is smaller is taken from the heap, which may have to write zeros, and which sanitizers watch.
-constexpr std::size_t large = std::size_t{1} << 20;
+constexpr std::size_t large = std::size_t{1} << 16;
 
 }  // namespace
 
