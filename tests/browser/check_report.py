@@ -340,6 +340,7 @@ class The_page_of_a_run(PageCase):
         (directory / "summary.json").unlink()
         rouleau("report", directory)
         page = self.open(directory / "report.html")
+        self.assertEqual(page.run("document.querySelector('h1').textContent"), json.loads((directory / "scene.json").read_text())["title"])
         self.assertIn("Not finished", page.run("document.querySelector('.status').textContent"))
         self.assertGreater(page.run("charts.length"), 5)
         self.assert_sound(page)

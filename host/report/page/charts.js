@@ -152,7 +152,7 @@ class Chart {
       series.push({...first, width: .6 * fine}, {...second, width: .6 * fine});
     });
     return {
-      width: this.width * fine, height: this.height * fine, series, bands, pxAlign: true, padding: [8 * fine, 18 * fine, 0, 0],
+      width: this.width * fine, height: this.height * fine, series, bands, pxAlign: true, padding: [8 * fine, 24 * fine, 0, 0],
       legend: {show: false}, focus: {alpha: .25},
       scales: {x: {time: false, range: () => zoomed || range}, y: {range: this.range}},
       axes: [{...axis, size: 22 * fine, space: 64 * fine, label: this.timeline.title, labelFont: font, labelSize: 16 * fine, labelGap: 0, ...this.stageAxis(fine)},

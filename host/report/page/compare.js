@@ -21,7 +21,7 @@ function runName(r, {runs, differences}) {
 }
 
 function showComparison(data) {
-  const {runs, differences} = data, titles = [...new Set(runs.map(run => run.summary.title || "Untitled scene"))];
+  const {runs, differences} = data, titles = [...new Set(runs.map(titleOf))];
   document.title = `${titles.join(" | ")} – Rouleau`;
   page.append(element("h1", {}, titles.join(" | ")), note(`${runs.length} runs side by side`));
   const warned = runs.map((run, r) => warningBoxes(run, runNames[r])), isShared = warned.every((boxes, r) => boxes.length && JSON.stringify([runs[r].summary.warnings, runs[r].shown.damage, runs[r].summary.resumed]) === JSON.stringify([runs[0].summary.warnings, runs[0].shown.damage, runs[0].summary.resumed]));

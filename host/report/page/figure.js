@@ -3,7 +3,7 @@
 function captionOf(drawn) {
   const {data, timeline, run, view} = drawn, summary = data.summary ?? {}, output = timeline.output(run), cells = drawn.surfaces?.count ?? drawn.outlines?.count ?? 0, colour = drawn.colours[view.colour];
   const when = grows(data) ? `strain ${format(data.strain[output], 3)}, ${format(data.time_s[output], 3)} s` : `${format(data.time_s[output], 3)} s`, box = `${data.domain.size_um.map(l => format(l, 3)).join(" × ")} µm`, cut = drawn.cut?.axis ?? null;
-  return [`${summary.title || "Untitled scene"}.`, `At ${when}${cells ? `; ${cells} ${cells === 1 ? "cell" : "cells"}` : ""} in a box of ${box}.`, colour?.scale ? `Colour: ${colour.title}.` : null,
+  return [`${titleOf(data)}.`, `At ${when}${cells ? `; ${cells} ${cells === 1 ? "cell" : "cells"}` : ""} in a box of ${box}.`, colour?.scale ? `Colour: ${colour.title}.` : null,
     cut === null ? null : `Cut at ${"xyz"[cut]} = ${format(drawn.cut.share * drawn.shown[cut], 3)} µm.`, drawn.surfaces ? "In perspective; the bar is a length in the middle of the box." : null, `Computed with Rouleau ${programOf(summary)}.`].filter(Boolean).join(" ");
 }
 /// Words in lines no longer than `width`.

@@ -85,6 +85,7 @@ function resultOf(run) {
 }
 
 function sceneOf(run) { try { return JSON.parse(run.scene); } catch { return null; } }  // a scene may have comments
+const titleOf = run => run.summary?.title || sceneOf(run)?.title || "Untitled scene";
 function expectedOf(run) { const expected = sceneOf(run)?.expected; return typeof expected === "string" ? expected : null; }
 
 /// How a run ended where that is not as it should be, and what it cost.

@@ -32,7 +32,7 @@ function runFooter(run) {
 }
 
 function showRun(run) {
-  const summary = run.summary || {}, title = summary.title || "Untitled scene", timeline = new Timeline([run]);
+  const summary = run.summary || {}, title = titleOf(run), timeline = new Timeline([run]);
   document.title = `${title} – Rouleau`;
   page.append(element("h1", {}, title), note([summary.scene_file, summary.started, summary.machine].filter(Boolean).join(" · ")));
   page.append(...(run.shown.damage || []).length ? [warningBox(run.shown.damage, "", "Some of the run's files are damaged")] : []);
