@@ -229,6 +229,7 @@ Snapshot Observer::observe(core::AnySolver<D>& solver, const core::FluidMeasures
   Snapshot snapshot;
   snapshot.stage = setting.index;
   snapshot.stage_name = setting.stage->name;
+  snapshot.dimension = D;
   snapshot.mach_max = follow_fluid(solver.fluid(), measured);
   snapshot.mass_drift = mass_drift_;
   const double viscosity = core::viscosity_of(setting.tau);

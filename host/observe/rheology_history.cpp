@@ -90,8 +90,11 @@ void RheologyHistory::follow(const Snapshot& snapshot) {
     stage_ = snapshot.stage;
   }
   Instant now{snapshot.strain - start_strain_, snapshot.time - start_time_, {}, {}, {}, {}, {}};
+  RunKind any(snapshot.dimension, true, true, true, true);
+  any.openings.fill(most_openings + 1);
   for (const Observable& observable : averaged())
-    now.values.push_back(std::get<double>(observable.value({.output = snapshot})));
+    now.values.push_back(observable.is_in(any) ? std::get<double>(observable.value({.output = snapshot}))
+                                               : std::nan(""));
   if (snapshot.cells.size() <= most_cells_remembered) {
     for (const CellSnapshot& cell : snapshot.cells) {
       now.cell.push_back(cell.cell);

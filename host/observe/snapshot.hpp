@@ -124,6 +124,7 @@ struct Snapshot {
   double strain = 0;  ///< accumulated over the stages
   int stage = 0;
   std::string stage_name;
+  int dimension = 2;
   std::vector<CellSnapshot> cells;  ///< those that are there, by their numbers
   std::vector<ContactSnapshot> contacts;
   std::vector<ContactSnapshot> bonds;  ///< pairs of different cells that are joined, close or not

@@ -91,9 +91,14 @@ void add_oscillation(const LimitedStage& of, LimitList& limits) {
                of.lower + ": the fluid is simulated heavier than it is and lags behind what drives it", of.density);
 }
 
-/// A triangle of a membrane that treads is strained back and forth at most as fast as the flow shears.
+/// A triangle of a membrane that treads is strained back and forth at most as fast as the flow shears. What forces pull,
+/// and what comes back once they end, is to be seen within its stage.
 void add_viscous_lag(const LimitedStage& of, LimitList& limits) {
-  const double rate = of.facts.shear_rate * of.stage.units.time + 2 * std::numbers::pi * of.stage.oscillation.frequency;
+  const bool pulled = std::any_of(of.scene.stages.begin(), of.scene.stages.end(),
+                                  [](const scene::Stage& stage) { return !stage.forces.empty(); });
+  const double rate = of.facts.shear_rate * of.stage.units.time +
+                      2 * std::numbers::pi * of.stage.oscillation.frequency +
+                      (pulled ? 1 / static_cast<double>(of.stage.max_steps) : 0);
   const double lag = of.facts.models->viscous_lag;
   if (!(rate * lag > 0)) return;
   limits.below("relative error of the stress of viscous membranes where it changes as fast as the flow" + of.where,

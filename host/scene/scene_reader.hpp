@@ -182,6 +182,8 @@ std::vector<CellPlacement> read_cells(const SceneFields& fields, const std::vect
 /// What the entry asks for; with a hematocrit it has no count yet.
 RandomPacking read_packing(const SceneFields& fields, const std::string& entry, int type, const Domain& domain);
 std::vector<Stage> read_stages(const SceneFields& fields, const Scene& scene);
+/// Refuses what a stage would wait for in vain. `flows`: something drives its fluid.
+void check_until(const SceneFields& fields, const Stage& stage, const Scene& scene, bool flows);
 Output read_output(const SceneFields& fields, const std::vector<Stage>& stages, const Domain& domain);
 FieldStorage read_field_storage(const SceneFields& fields, const Domain& domain);
 /// Refuses cells with more membrane nodes than can be computed.

@@ -33,28 +33,6 @@ void check_mean_velocity(const SceneFields& fields, const Stage& stage, const Sc
   }
 }
 
-/// Of a stage that ends when nothing happens any more.
-void check_until(const SceneFields& fields, const Stage& stage, const Scene& scene, bool flows) {
-  if (!stage.until_at_rest && !stage.until_equilibrium) return;
-  const std::string key = stage.pointer + "/until", word = fields.at(key).get<std::string>();
-  if (flows) {
-    fields.refuse(
-        key, stage.until_at_rest
-                 ? "cells never come to rest in a stage that flows; end it by duration or strain"
-                 : "the flow puts energy in, so that there is no equilibrium; end the stage by duration or strain");
-  }
-  if (scene.cells.empty() && scene.packings.empty() && fields.settled("/cells")) {
-    fields.refuse(key, "there are no cells that could come to " +
-                           std::string(stage.until_at_rest ? "rest" : "an equilibrium") +
-                           "; end the stage by duration");
-  }
-  if (!stage.duration) {
-    fields.refuse(key, in_quotes(word) +
-                           " needs a duration beside it, the longest time to wait: cells that never "
-                           "come to rest would run for ever");
-  }
-}
-
 /// Faults that the schema cannot see because they lie between the keys of a stage.
 void check_stage(const SceneFields& fields, const Stage& stage, const Scene& scene) {
   const auto& pointer = stage.pointer;
@@ -416,6 +394,12 @@ Output read_output(const SceneFields& fields, const std::vector<Stage>& stages, 
       fields.refuse("/output/profiles", "profiles are taken when cells are written\ngive output.cells");
   });
   output.bond_share = fields.value_or("/output/bond_share", output.bond_share);
+  for (const Stage& stage : stages) {
+    if (output.cells.never() && (stage.until_parted || !stage.until_mean.empty()))
+      fields.attempt([&] {
+        fields.refuse(stage.pointer + "/until", "this is looked at when cells are written\ngive output.cells");
+      });
+  }
   return output;
 }
 
