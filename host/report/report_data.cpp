@@ -21,7 +21,6 @@
 #include "report_cells.hpp"
 #include "report_fields.hpp"
 #include "report_outlines.hpp"
-#include "report_surfaces.hpp"
 
 namespace rouleau::report {
 
