@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 #include <numeric>
 #include <optional>
@@ -16,7 +15,6 @@
 #include "scene/lattice.hpp"
 #include "scene/stage_scales.hpp"
 #include "shape/extent.hpp"
-#include "shape/outline.hpp"
 
 namespace rouleau::accuracy {
 

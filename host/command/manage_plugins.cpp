@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <iostream>
-#include <string>
 
 #include "base/process.hpp"
 #include "base/text.hpp"

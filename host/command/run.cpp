@@ -1,5 +1,4 @@
 // rouleau run SCENE: simulate and write a run directory.
-#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <iostream>
@@ -16,7 +15,6 @@
 #include "command/process/terminal.hpp"
 #include "commands.hpp"
 #include "plan/estimate.hpp"
-#include "plan/ranks/blocks.hpp"
 #include "ranked_run.hpp"
 #include "refined_run.hpp"
 #include "report/report.hpp"

@@ -7,10 +7,8 @@
 #include "base/text.hpp"
 #include "command/process/command_line.hpp"
 #include "command/process/crew.hpp"
-#include "core/membrane/membranes.hpp"
 #include "manage_plugins.hpp"
 #include "plan/placed_cells.hpp"
-#include "plan/ranks/blocks.hpp"
 
 namespace rouleau::command {
 

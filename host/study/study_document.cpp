@@ -6,7 +6,6 @@
 #include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "json/json_pointer.hpp"
-#include "json/schema.hpp"
 
 namespace rouleau::study {
 

@@ -31,19 +31,12 @@ std::string words_of(const MatrixPoint& point) {
   std::vector<double> walls;
   for (const trial::TimedRun& run : record.runs) walls.push_back(run.wall_s);
   const auto [least, most] = std::minmax_element(walls.begin(), walls.end());
-  std::string text = record.steps.dump() + " steps in " + duration_text(*least);
-  if (walls.size() > 1) text += " to " + duration_text(*most);
+  std::string text = record.steps.dump() + " steps in " + time_in_words(*least);
+  if (walls.size() > 1) text += " to " + time_in_words(*most);
   return text;
 }
 
 }  // namespace
-
-std::string duration_text(double seconds) {
-  if (std::isnan(seconds)) return "an unknown time";
-  if (seconds < 120) return number(seconds, 2) + " s";
-  if (seconds < 7200) return number(seconds / 60, 2) + " min";
-  return number(seconds / 3600, 2) + " h";
-}
 
 StudyRun::StudyRun(const Study& study, StudyOptions options)
     : study_(study),
@@ -133,14 +126,14 @@ void StudyRun::run_all() {
       passed.insert(point.id);
       if (!point.record)
         point.left_out =
-            "expected to take " + duration_text(expected) + "; " + duration_text(left) + " of the budget were left";
+            "expected to take " + time_in_words(expected) + "; " + time_in_words(left) + " of the budget were left";
       continue;
     }
     double all = 0;
     for (const MatrixPoint* other : missing) all += expected_s(*other);
-    campaign_.say(trial::name_of(study_.axes, point.point) + ": expected " + duration_text(expected) + "; " +
+    campaign_.say(trial::name_of(study_.axes, point.point) + ": expected " + time_in_words(expected) + "; " +
                   std::to_string(missing.size()) + " of " + std::to_string(state_.points.size()) + " points left, " +
-                  duration_text(std::min(all, left)));
+                  time_in_words(std::min(all, left)));
     if (take_turn(point) != PointEnd::done) passed.insert(point.id);
   }
 }

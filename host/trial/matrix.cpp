@@ -168,6 +168,10 @@ class AxisReader {
   const Json& axis_;
 };
 
+const Setting& setting_of(const Axis& axis, const Point& point, std::size_t index) {
+  return axis.settings[point.setting[index]];
+}
+
 }  // namespace
 
 std::vector<Axis> read_axes(const json::Document& document, const std::string& pointer, const Json& base_scene) {
@@ -204,14 +208,6 @@ std::vector<Point> cross(const std::vector<Axis>& axes) {
   }
   return points;
 }
-
-namespace {
-
-const Setting& setting_of(const Axis& axis, const Point& point, std::size_t index) {
-  return axis.settings[point.setting[index]];
-}
-
-}  // namespace
 
 Json scene_of(const Json& base, const std::vector<Axis>& axes, const Point& point) {
   Json scene = base;

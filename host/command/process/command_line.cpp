@@ -4,14 +4,12 @@
 #include <cctype>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <iostream>
 #include <sstream>
 #include <system_error>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "json/schema.hpp"
 #include "program.hpp"
 #include "terminal.hpp"
 #include "units/units.hpp"

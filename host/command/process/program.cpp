@@ -8,9 +8,7 @@
 #include <new>
 #include <rouleau/dispatch.hpp>
 #include <string_view>
-#include <vector>
 
-#include "base/error.hpp"
 #include "base/foreign_call.hpp"
 #include "base/synonyms.hpp"
 #include "base/text.hpp"
@@ -33,17 +31,9 @@ std::string option_for(Way way) {
     }
     return {};
   };
-  switch (way) {
-    case Way::elsewhere:
-      return first_of({"out", "dir"});
-    case Way::anew:
-      return first_of({"overwrite"});
-    case Way::resume:
-      return first_of({"resume"});
-    case Way::accept:
-      return first_of({"force"});
-  }
-  return {};
+  if (way == Way::elsewhere) return first_of({"out", "dir"});
+  if (way == Way::anew) return first_of({"overwrite"});
+  return first_of({way == Way::resume ? "resume" : "force"});
 }
 
 Error for_terminal(const Error& error) {
@@ -99,15 +89,8 @@ bool programs_read_errors() {
 }  // namespace
 
 int exit_code_of(Cause cause) {
-  switch (cause) {
-    case Cause::bad_input:
-      return exit_code::bad_input;
-    case Cause::plugin_refused:
-      return exit_code::plugin_refused;
-    case Cause::input_output:
-      break;
-  }
-  return exit_code::input_output;
+  if (cause == Cause::bad_input) return exit_code::bad_input;
+  return cause == Cause::plugin_refused ? exit_code::plugin_refused : exit_code::input_output;
 }
 
 std::string in_options(const Remedy& remedy) {
