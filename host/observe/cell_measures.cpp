@@ -1,7 +1,6 @@
 #include "cell_measures.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numbers>
 #include <vector>
 

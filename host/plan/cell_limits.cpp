@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <vector>
 
 #include "base/text.hpp"
 #include "constants.hpp"
@@ -17,7 +16,6 @@
 #include "scene/driving_flow.hpp"
 #include "scene/lattice.hpp"
 #include "shape/extent.hpp"
-#include "shape/outline.hpp"
 
 namespace rouleau::plan {
 
@@ -136,49 +134,6 @@ double largest_held_strain_of(const Plan& plan) {
   return std::min(largest_held_strain / held_on_companions, plan.numerics_choice->target);
 }
 
-}  // namespace
-
-void add_stiffness(const LimitedStage& of, LimitList& limits) {
-  const Plan& plan = of.plan;
-  const ModelFacts& membrane = *of.facts.models;
-  const bool gains = plan.semi_implicit && semi_implicit_gains(of.scene);
-  const std::string coupled = plan.semi_implicit ? ", semi-implicit step" : " in lattice units";
-  const bool zigzags = kernel_named(of.scene.numerics.kernel).semi_implicit_from == nowhere;
-  const std::string softer = of.lower + ", with which the lattice stiffness falls" +
-                             (zigzags              ? ", or set numerics.kernel to \"peskin4\""
-                              : plan.semi_implicit ? ""
-                                                   : ", or set numerics.coupling to \"semi-implicit\"");
-  const double loss = plan.semi_implicit && zigzags ? semi_implicit_loss : 1;
-  limits.below("stretching stiffness" + coupled + of.where, membrane.stretching.value,
-               (gains ? stretching_gain_of(plan) : loss) * membrane.stretching.limit, softer, of.density);
-  limits.below("bending stiffness" + coupled + of.where, membrane.bending.value,
-               (gains ? bending_gain : loss) * membrane.bending.limit, softer, of.density);
-  if (gains && of.facts.shear_rate > 0 && membrane.steps_of_mean > 0) {
-    limits.below("strain during which the semi-implicit step holds forces" + of.where,
-                 membrane.steps_of_mean * of.facts.shear_rate * of.stage.units.time, largest_held_strain_of(plan),
-                 of.lower + ": membranes turn against the forces that they hold", of.density, 2);
-  }
-}
-
-void add_slip_and_prestress(const LimitedStage& of, LimitList& limits) {
-  const ModelFacts& membrane = *of.facts.models;
-  if (membrane.slip_smoothing > 0 && of.facts.shear_rate > 0 && reports_moments(of.plan)) {
-    limits.below("smoothing of the slip, variance over radius^2" + of.where, membrane.slip_smoothing,
-                 of.plan.numerics_choice ? of.plan.numerics_choice->target : largest_slip_smoothing,
-                 of.lower +
-                     " or raise the resolution: stiff membranes need their slip smoothed, and cells turn over late, or "
-                     "early, by half of this",
-                 of.density);
-  }
-  if (membrane.prestress_compression > 0) {
-    limits.below("compression of cells by their prestress, 3 T/a" + of.where, membrane.prestress_compression,
-                 largest_compression_by_prestress,
-                 of.lower + ": pressure compresses the lattice's fluid the more, the longer the time step", of.density);
-  }
-}
-
-namespace {
-
 /// What a well squeezes cells with, where nothing keeps a cell's own faces apart.
 void add_depth(const LimitedStage& of, std::size_t i, const std::string& named, const Well& well, LimitList& limits) {
   const scene::Interaction& interaction = of.scene.interactions[i];
@@ -215,36 +170,6 @@ void add_lengths(const PotentialShape& shape, bool wall, const std::string& name
                    (wall ? "in" : "on each other in") + " a narrow one",
                resolution);
 }
-
-}  // namespace
-
-void add_potentials(const LimitedStage& of, LimitList& limits) {
-  const std::vector<PlannedModel>& interactions = of.plan.interactions;
-  for (std::size_t i = 0; i < interactions.size(); ++i) {
-    if (!of.facts.models->potentials[i]) continue;  // left out; or its stiffness is a matter of what it remembers
-    const PotentialShape& shape = *of.facts.models->potentials[i];
-    const PlannedModel& model = interactions[i];
-    const auto same = [&](const PlannedModel& other) { return other.manifest->id == model.manifest->id; };
-    const bool several = std::count_if(interactions.begin(), interactions.end(), same) > 1;
-    const std::string named = model.manifest->id + (several ? " (" + of.plan.owner_of(model) + ")" : "");
-    limits.below("contact stiffness of " + named + " in lattice units" + of.where, shape.stiffness,
-                 interpolate(contact_limit, of.scene.numerics.tau),
-                 of.lower + ", with which the lattice stiffness falls", of.density);
-    const bool resolved_well = shape.well && shape.well->distance >= least_gap;
-    if (resolved_well) {
-      limits.below("compression by the attraction of " + named + of.where, 3 * shape.well->attraction,
-                   largest_compression_by_attraction,
-                   of.lower + ": the lattice's fluid gives way to it, and cells leak while they snap together",
-                   of.density);
-    }
-    if (of.stage.index != 0) continue;
-    const bool wall = of.scene.interactions[i].with_wall(), self = of.scene.interactions[i].with_self();
-    if (resolved_well && !wall && !self && of.scene.cells.size() > 1) add_depth(of, i, named, *shape.well, limits);
-    add_lengths(shape, wall, named, limits);
-  }
-}
-
-namespace {
 
 /// Smallest gaps at the start, lattice spacings; infinite where nothing is near.
 struct StartGaps {
@@ -320,6 +245,71 @@ StartGaps start_gaps(const scene::Scene& scene) {
 }
 
 }  // namespace
+
+void add_stiffness(const LimitedStage& of, LimitList& limits) {
+  const Plan& plan = of.plan;
+  const ModelFacts& membrane = *of.facts.models;
+  const bool gains = plan.semi_implicit && semi_implicit_gains(of.scene);
+  const std::string coupled = plan.semi_implicit ? ", semi-implicit step" : " in lattice units";
+  const bool zigzags = kernel_named(of.scene.numerics.kernel).semi_implicit_from == nowhere;
+  const std::string softer = of.lower + ", with which the lattice stiffness falls" +
+                             (zigzags              ? ", or set numerics.kernel to \"peskin4\""
+                              : plan.semi_implicit ? ""
+                                                   : ", or set numerics.coupling to \"semi-implicit\"");
+  const double loss = plan.semi_implicit && zigzags ? semi_implicit_loss : 1;
+  limits.below("stretching stiffness" + coupled + of.where, membrane.stretching.value,
+               (gains ? stretching_gain_of(plan) : loss) * membrane.stretching.limit, softer, of.density);
+  limits.below("bending stiffness" + coupled + of.where, membrane.bending.value,
+               (gains ? bending_gain : loss) * membrane.bending.limit, softer, of.density);
+  if (gains && of.facts.shear_rate > 0 && membrane.steps_of_mean > 0) {
+    limits.below("strain during which the semi-implicit step holds forces" + of.where,
+                 membrane.steps_of_mean * of.facts.shear_rate * of.stage.units.time, largest_held_strain_of(plan),
+                 of.lower + ": membranes turn against the forces that they hold", of.density, 2);
+  }
+}
+
+void add_slip_and_prestress(const LimitedStage& of, LimitList& limits) {
+  const ModelFacts& membrane = *of.facts.models;
+  if (membrane.slip_smoothing > 0 && of.facts.shear_rate > 0 && reports_moments(of.plan)) {
+    limits.below("smoothing of the slip, variance over radius^2" + of.where, membrane.slip_smoothing,
+                 of.plan.numerics_choice ? of.plan.numerics_choice->target : largest_slip_smoothing,
+                 of.lower +
+                     " or raise the resolution: stiff membranes need their slip smoothed, and cells turn over late, or "
+                     "early, by half of this",
+                 of.density);
+  }
+  if (membrane.prestress_compression > 0) {
+    limits.below("compression of cells by their prestress, 3 T/a" + of.where, membrane.prestress_compression,
+                 largest_compression_by_prestress,
+                 of.lower + ": pressure compresses the lattice's fluid the more, the longer the time step", of.density);
+  }
+}
+
+void add_potentials(const LimitedStage& of, LimitList& limits) {
+  const std::vector<PlannedModel>& interactions = of.plan.interactions;
+  for (std::size_t i = 0; i < interactions.size(); ++i) {
+    if (!of.facts.models->potentials[i]) continue;  // left out; or its stiffness is a matter of what it remembers
+    const PotentialShape& shape = *of.facts.models->potentials[i];
+    const PlannedModel& model = interactions[i];
+    const auto same = [&](const PlannedModel& other) { return other.manifest->id == model.manifest->id; };
+    const bool several = std::count_if(interactions.begin(), interactions.end(), same) > 1;
+    const std::string named = model.manifest->id + (several ? " (" + of.plan.owner_of(model) + ")" : "");
+    limits.below("contact stiffness of " + named + " in lattice units" + of.where, shape.stiffness,
+                 interpolate(contact_limit, of.scene.numerics.tau),
+                 of.lower + ", with which the lattice stiffness falls", of.density);
+    const bool resolved_well = shape.well && shape.well->distance >= least_gap;
+    if (resolved_well) {
+      limits.below("compression by the attraction of " + named + of.where, 3 * shape.well->attraction,
+                   largest_compression_by_attraction,
+                   of.lower + ": the lattice's fluid gives way to it, and cells leak while they snap together",
+                   of.density);
+    }
+    if (of.stage.index != 0) continue;
+    const bool wall = of.scene.interactions[i].with_wall(), self = of.scene.interactions[i].with_self();
+    if (resolved_well && !wall && !self && of.scene.cells.size() > 1) add_depth(of, i, named, *shape.well, limits);
+    add_lengths(shape, wall, named, limits);
+  }
+}
 
 void add_gaps(const LimitedStage& of, LimitList& limits) {
   const StartGaps gaps = start_gaps(of.scene);

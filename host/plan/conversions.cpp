@@ -7,7 +7,6 @@
 #include "flow.hpp"
 #include "scene/lattice.hpp"
 #include "shape/extent.hpp"
-#include "shape/outline.hpp"
 #include "units/lattice_units.hpp"
 
 namespace rouleau::plan {

@@ -12,7 +12,6 @@
 #include "scene/driving_flow.hpp"
 #include "scene/lattice.hpp"
 #include "shape/extent.hpp"
-#include "shape/outline.hpp"
 
 namespace rouleau::plan {
 

@@ -5,7 +5,6 @@
 
 #include "base/text.hpp"
 #include "plugin/model.hpp"
-#include "scene/driving_flow.hpp"
 
 namespace rouleau::plan {
 

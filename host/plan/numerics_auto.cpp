@@ -7,7 +7,6 @@
 
 #include "base/text.hpp"
 #include "constants.hpp"
-#include "json/document.hpp"
 #include "json/json_pointer.hpp"
 #include "numerics_problem.hpp"
 #include "scene/driving_flow.hpp"
@@ -42,6 +41,47 @@ Json three_digits_below(double value) {
   const double rounded = std::stod(number(std::floor(value / digit * (1 + 1e-12)) * digit, 3));
   if (rounded == std::floor(rounded) && rounded < 1e15) return static_cast<std::int64_t>(rounded);
   return rounded;
+}
+
+/// Gives "numerics": "auto" the form of an object.
+void spell_out_numerics(json::Document& document) {
+  if (!document.root().at("numerics").is_object()) document.put("/numerics", {{"auto", Json::object()}}, origin);
+}
+
+/// Gives a document values with which it can be read; they mean nothing.
+void put_draft_numerics(json::Document& document) {
+  const Json root = document.root();
+  const scene::SceneFields fields(document);
+  const int dimension = static_cast<int>(root.at("domain").at("size").size());
+  if (!root.at("domain").contains("nodes")) {
+    const auto lattice =
+        scene::coarsest_lattice(fields.quantities("/domain/size", "m", scene::range::length, dimension));
+    if (!lattice) {
+      const std::string most = std::to_string(scene::most_coarse_rows);
+      const std::array wrong{
+          "the ratio of these sides is not one of whole numbers up to " + most +
+              ", so that no lattice with the same spacing along both can be chosen\n"
+              "write sides with a simple ratio, such as [\"50 um\", \"25 um\"], or give nodes",
+          "the ratios of these sides are not those of whole numbers up to " + most +
+              ", or want more nodes than can be computed (" + std::to_string(scene::most_nodes_of_block) +
+              "), so that no lattice with the same spacing along all three can be chosen\n"
+              "write sides with simple ratios, such as [\"50 um\", \"25 um\", \"25 um\"], or give nodes"};
+      fields.refuse("/domain/size", wrong[dimension - 2]);
+    }
+    // As fine as a lattice that might be chosen: a region of output must hold nodes.
+    const int factor = std::max(1, 1024 / *std::max_element(lattice->begin(), lattice->end()));
+    document.put("/domain/nodes", scene::refined(*lattice, factor).value(), origin);
+  }
+  const Json types = root.value("cell_types", Json::object());
+  for (const auto& [name, type] : types.items()) {
+    const std::string cell = json::child_pointer("/cell_types", name);
+    const auto& [key, but_of, count] = draft_pieces[dimension - 2];
+    if (!type.contains(key) && !type.at("shape").contains(but_of)) document.put(cell + "/" + key, count, origin);
+  }
+}
+
+bool leaves_numerics_open(const Json& numerics) {
+  return numerics == "auto" || (numerics.is_object() && numerics.contains("auto"));
 }
 
 }  // namespace
@@ -190,51 +230,6 @@ std::string NumericsProblem::doubt_about(const Trial& best) const {
     return unknown("capillary number", most, measured.least, measured.most);
   return {};
 }
-
-namespace {
-
-/// Gives "numerics": "auto" the form of an object.
-void spell_out_numerics(json::Document& document) {
-  if (!document.root().at("numerics").is_object()) document.put("/numerics", {{"auto", Json::object()}}, origin);
-}
-
-/// Gives a document values with which it can be read; they mean nothing.
-void put_draft_numerics(json::Document& document) {
-  const Json root = document.root();
-  const scene::SceneFields fields(document);
-  const int dimension = static_cast<int>(root.at("domain").at("size").size());
-  if (!root.at("domain").contains("nodes")) {
-    const auto lattice =
-        scene::coarsest_lattice(fields.quantities("/domain/size", "m", scene::range::length, dimension));
-    if (!lattice) {
-      const std::string most = std::to_string(scene::most_coarse_rows);
-      const std::array wrong{
-          "the ratio of these sides is not one of whole numbers up to " + most +
-              ", so that no lattice with the same spacing along both can be chosen\n"
-              "write sides with a simple ratio, such as [\"50 um\", \"25 um\"], or give nodes",
-          "the ratios of these sides are not those of whole numbers up to " + most +
-              ", or want more nodes than can be computed (" + std::to_string(scene::most_nodes_of_block) +
-              "), so that no lattice with the same spacing along all three can be chosen\n"
-              "write sides with simple ratios, such as [\"50 um\", \"25 um\", \"25 um\"], or give nodes"};
-      fields.refuse("/domain/size", wrong[dimension - 2]);
-    }
-    // As fine as a lattice that might be chosen: a region of output must hold nodes.
-    const int factor = std::max(1, 1024 / *std::max_element(lattice->begin(), lattice->end()));
-    document.put("/domain/nodes", scene::refined(*lattice, factor).value(), origin);
-  }
-  const Json types = root.value("cell_types", Json::object());
-  for (const auto& [name, type] : types.items()) {
-    const std::string cell = json::child_pointer("/cell_types", name);
-    const auto& [key, but_of, count] = draft_pieces[dimension - 2];
-    if (!type.contains(key) && !type.at("shape").contains(but_of)) document.put(cell + "/" + key, count, origin);
-  }
-}
-
-bool leaves_numerics_open(const Json& numerics) {
-  return numerics == "auto" || (numerics.is_object() && numerics.contains("auto"));
-}
-
-}  // namespace
 
 OpenScene::OpenScene(json::Document document, Faults& faults) : document_(std::move(document)) {
   if (!faults.empty() || !leaves_numerics_open(document_.root().value("numerics", Json()))) return;

@@ -11,7 +11,6 @@
 #include "scene/lattice.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/extent.hpp"
-#include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
 
 namespace rouleau::plan {
@@ -280,10 +279,6 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
   }
   return warnings;
 }
-
-}  // namespace
-
-namespace {
 
 std::vector<LateStart> late_starts(const Plan& plan) {
   constexpr double slight = 0.01;

@@ -58,14 +58,6 @@ std::vector<double> spread(double from, double first, double to, int count) {
   return values;
 }
 
-}  // namespace
-
-double force_at(const core::Potential& potential, double distance) {
-  return evaluate(potential, {distance}).force.front();
-}
-
-namespace {
-
 /// Where the force turns from repulsion, at `low`, to attraction, at `high`.
 double turning_point(const core::Potential& potential, double low, double high) {
   for (int i = 0; i < 200 && low < high; ++i) {
@@ -94,6 +86,10 @@ double largest(const std::vector<double>& values) {
 }
 
 }  // namespace
+
+double force_at(const core::Potential& potential, double distance) {
+  return evaluate(potential, {distance}).force.front();
+}
 
 PotentialShape find_shape(const core::Potential& potential) {
   constexpr int samples = 2000;

@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "constants.hpp"
 #include "core/fluid/openings/section.hpp"
-#include "core/geometry/border_of_region.hpp"
+#include "core/geometry/border.hpp"
 #include "core/geometry/parts.hpp"
 #include "placed_cells.hpp"
 #include "scene/driving_flow.hpp"

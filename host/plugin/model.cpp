@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "core/model/lattice_setup.hpp"
+#include "core/model/compiled_in.hpp"
 #include "library.hpp"
 
 namespace rouleau::plugin {

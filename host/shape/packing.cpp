@@ -9,7 +9,6 @@
 #include "core/geometry/formulas.hpp"
 #include "core/geometry/parts.hpp"
 #include "extent.hpp"
-#include "outline.hpp"
 #include "rigid_outline.hpp"
 #include "rigid_surface.hpp"
 #include "scene/lattice.hpp"

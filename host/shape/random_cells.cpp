@@ -6,7 +6,6 @@
 
 #include "base/text.hpp"
 #include "extent.hpp"
-#include "outline.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/scene_reader.hpp"
 

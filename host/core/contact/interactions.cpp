@@ -1,7 +1,6 @@
 #include "interactions.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "core/domain/exact_sum.hpp"

@@ -2,14 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "core/fluid/layers.hpp"
 #include "core/membrane/rounding.hpp"
-#include "disjoint.hpp"
 
 namespace rouleau::core {
 
 namespace {
+
+/// Adds an interval {begin, end} to others that do not touch each other; those that it touches become one with it.
+template <class Interval>
+void add_disjoint(std::vector<Interval>& row, Interval added) {
+  for (std::size_t k = 0; k < row.size();) {
+    if (row[k].end < added.begin || added.end < row[k].begin) {
+      ++k;
+      continue;
+    }
+    added = {std::min(added.begin, row[k].begin), std::max(added.end, row[k].end)};
+    row[k] = row.back();
+    row.pop_back();
+  }
+  row.push_back(added);
+}
 
 /// Nodes may move this far before the next update; the marks allow for a whole spacing.
 constexpr double displacement_limit = 0.1;

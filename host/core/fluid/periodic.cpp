@@ -86,31 +86,6 @@ void copy_node(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& ro
   });
 }
 
-}  // namespace
-
-template <class T, class Set>
-void send_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row) {
-  const int nx = lattice.size(0);
-  if (lattice.wraps(0)) {
-    const auto all = [](int) { return true; };
-    copy_node(lattice, row, +1, 0, nx, all);
-    copy_node(lattice, row, -1, nx - 1, -1, all);
-  }
-  copy_across(lattice, row, true);
-}
-
-template <class T, class Set>
-void receive_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row) {
-  const int nx = lattice.size(0);
-  copy_across(lattice, row, false);
-  if (!lattice.wraps(0)) return;
-  const auto comes = [&](int q) { return comes_along(lattice, q, row); };
-  copy_node(lattice, row, +1, nx, 0, comes);
-  copy_node(lattice, row, -1, -1, nx - 1, comes);
-}
-
-namespace {
-
 /// A row of the halo that is made of a row of the block: sum - u if it lies beyond a wall (with another one, sum + u).
 template <int D>
 struct Image {
@@ -159,6 +134,27 @@ void fill_images(Field<T, D>& field, const std::array<int, D - 1>& row, const Do
 }
 
 }  // namespace
+
+template <class T, class Set>
+void send_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row) {
+  const int nx = lattice.size(0);
+  if (lattice.wraps(0)) {
+    const auto all = [](int) { return true; };
+    copy_node(lattice, row, +1, 0, nx, all);
+    copy_node(lattice, row, -1, nx - 1, -1, all);
+  }
+  copy_across(lattice, row, true);
+}
+
+template <class T, class Set>
+void receive_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row) {
+  const int nx = lattice.size(0);
+  copy_across(lattice, row, false);
+  if (!lattice.wraps(0)) return;
+  const auto comes = [&](int q) { return comes_along(lattice, q, row); };
+  copy_node(lattice, row, +1, nx, 0, comes);
+  copy_node(lattice, row, -1, -1, nx - 1, comes);
+}
 
 template <class T, int D>
 void fill_velocity_halo(VectorField<T, D>& velocity, const std::array<int, D - 1>& row, const Domain<D>& domain,

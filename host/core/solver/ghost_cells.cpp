@@ -1,8 +1,10 @@
 #include "ghost_cells.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
+#include "core/coupling/slip_constants.hpp"
 #include "core/fluid/node_mask.hpp"
 #include "core/membrane/rounding.hpp"
 
@@ -23,6 +25,18 @@ bool lies_inside(const BoundingBox<D>& box, double reach, const Domain<D>& domai
 }
 
 }  // namespace
+
+template <int D>
+double extra_reach(const BasicSolverSetup<D>& setup) {
+  double largest = 0;
+  for (const CellType& type : setup.cell_types)
+    if (setup.slip_correction)
+      largest = std::max(largest, std::abs(slip_constants(setup.kernel, type.viscosity_ratio, D).shift));
+  return largest + stencil_above(setup.kernel) - 2;
+}
+
+template double extra_reach(const BasicSolverSetup<2>&);
+template double extra_reach(const BasicSolverSetup<3>&);
 
 template <int D>
 GhostCells<D>::GhostCells(const Ranks<D>& ranks, const std::vector<BoundingBox<D>>& boxes, GhostReach reach,

@@ -1,7 +1,6 @@
 #include "solver.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <stdexcept>
 
 #include "core/fluid/developed_flow.hpp"

@@ -1,6 +1,5 @@
 #include "surface_forces.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 

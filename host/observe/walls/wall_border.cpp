@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/geometry/zero_border.hpp"
+#include "core/geometry/border.hpp"
 #include "scene/lattice.hpp"
 
 namespace rouleau::observe {

@@ -12,7 +12,6 @@
 #include "core/membrane/rounding.hpp"
 #include "plan/estimate.hpp"
 #include "plan/placed_cells.hpp"
-#include "plan/solver_setup.hpp"
 #include "scene/lattice.hpp"
 #include "scene/scene_reader.hpp"
 

@@ -1,11 +1,7 @@
 #include "section.hpp"
 
 #include <Eigen/SparseLU>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <stdexcept>
-#include <vector>
 
 namespace rouleau::core {
 
