@@ -58,6 +58,43 @@ bool steers(unsigned code) {
          (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
 }
 
+/// Characters, not bytes: 10xxxxxx continue one.
+std::size_t length_of(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0U) != 0x80U; }));
+}
+
+/// Where a line goes on that is too long: below its last column, if that leaves room, or a little further in.
+std::size_t hanging_indent(std::string_view line, std::size_t width) {
+  const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
+  std::size_t column = begin == 0 ? 0 : begin + 2;  // paragraphs stand at the border
+  for (std::size_t gap = line.find("  ", begin); gap != std::string_view::npos; gap = line.find("  ", gap + 1)) {
+    const std::size_t next = line.find_first_not_of(' ', gap);
+    if (next != std::string_view::npos && length_of(line.substr(0, next)) <= width * 3 / 5)
+      column = length_of(line.substr(0, next));
+  }
+  return column;
+}
+
+std::string folded_line(std::string_view line, std::size_t width) {
+  if (length_of(line) <= width) return std::string(line);
+  const std::size_t indent = hanging_indent(line, width);
+  std::string text, row;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t word = std::min(line.find_first_not_of(' ', at), line.size());
+    const std::size_t end = std::min(line.find(' ', word), line.size());
+    const std::string_view piece = line.substr(at, end - at);
+    if (row.find_first_not_of(' ') != std::string::npos && length_of(row) + length_of(piece) > width) {
+      text += row + '\n';
+      row = std::string(indent, ' ') + std::string(line.substr(word, end - word));
+    } else {
+      row += piece;
+    }
+    at = end;
+  }
+  return text + row;
+}
+
 }  // namespace
 
 std::string printable(std::string_view text) {
@@ -158,47 +195,6 @@ std::string time_in_words(double seconds) {
   if (seconds < 120) return rounded(seconds, 2) + " s";
   return seconds < 7200 ? rounded(seconds / 60, 2) + " min" : rounded(seconds / 3600, 2) + " h";
 }
-
-namespace {
-
-/// Characters, not bytes: 10xxxxxx continue one.
-std::size_t length_of(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0U) != 0x80U; }));
-}
-
-/// Where a line goes on that is too long: below its last column, if that leaves room, or a little further in.
-std::size_t hanging_indent(std::string_view line, std::size_t width) {
-  const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
-  std::size_t column = begin == 0 ? 0 : begin + 2;  // paragraphs stand at the border
-  for (std::size_t gap = line.find("  ", begin); gap != std::string_view::npos; gap = line.find("  ", gap + 1)) {
-    const std::size_t next = line.find_first_not_of(' ', gap);
-    if (next != std::string_view::npos && length_of(line.substr(0, next)) <= width * 3 / 5)
-      column = length_of(line.substr(0, next));
-  }
-  return column;
-}
-
-std::string folded_line(std::string_view line, std::size_t width) {
-  if (length_of(line) <= width) return std::string(line);
-  const std::size_t indent = hanging_indent(line, width);
-  std::string text, row;
-  for (std::size_t at = 0; at < line.size();) {
-    const std::size_t word = std::min(line.find_first_not_of(' ', at), line.size());
-    const std::size_t end = std::min(line.find(' ', word), line.size());
-    const std::string_view piece = line.substr(at, end - at);
-    if (row.find_first_not_of(' ') != std::string::npos && length_of(row) + length_of(piece) > width) {
-      text += row + '\n';
-      row = std::string(indent, ' ') + std::string(line.substr(word, end - word));
-    } else {
-      row += piece;
-    }
-    at = end;
-  }
-  return text + row;
-}
-
-}  // namespace
 
 std::string folded(std::string_view text, std::size_t width) {
   std::string result;

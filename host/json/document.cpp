@@ -1,12 +1,10 @@
 #include "document.hpp"
 
-#include <string_view>
 #include <utility>
 
 #include "base/input_file.hpp"
 #include "base/text.hpp"
 #include "json_pointer.hpp"
-#include "parser.hpp"
 #include "shown.hpp"
 
 namespace rouleau::json {

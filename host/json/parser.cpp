@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "json.hpp"
 #include "json_pointer.hpp"
 
 namespace rouleau::json {

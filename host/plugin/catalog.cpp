@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
-#include <set>
 
 #include "base/installation.hpp"
 #include "base/synonyms.hpp"

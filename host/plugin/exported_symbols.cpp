@@ -9,7 +9,6 @@
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
-#include <vector>
 
 namespace rouleau::plugin {
 

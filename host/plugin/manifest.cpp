@@ -1,7 +1,6 @@
 #include "manifest.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace rouleau::plugin {
 

@@ -165,6 +165,32 @@ void check_element(const json::Document& document, const Manifest& manifest, con
   check("needs", manifest.needs);
 }
 
+void check_reference_numbers(const json::Document& document, const Manifest& manifest, const std::string& place) {
+  std::vector<std::string> parameters;
+  for (const Parameter& parameter : manifest.parameters) parameters.push_back(parameter.name);
+  const auto check = [&](const std::string& at, const Json& entry, const char* key,
+                         const std::vector<std::string>& known, const char* what) {
+    const Json members = entry.value(key, Json::object());
+    for (const auto& [name, value] : members.items()) {
+      if (name.starts_with("x-") || holds(known, name)) continue;
+      throw Error(Cause::plugin_refused, document.key_place(json::child_pointer(at + '/' + key, name)),
+                  in_quotes(name) + " is not among this model's " + what + did_you_mean(name, known) + "\n  " + what +
+                      ": " + listed(known));
+    }
+  };
+  std::vector<std::string> inputs = manifest.needs, outputs = manifest.gives;
+  for (const StateVariable& variable : manifest.state) {
+    inputs.push_back(variable.name);
+    outputs.push_back(variable.name);
+  }
+  for (std::size_t i = 0; i < manifest.checks.size(); ++i) {
+    const std::string at = place + "/checks/" + std::to_string(i);
+    check(at, manifest.checks[i], "parameters", parameters, "parameters");
+    check(at, manifest.checks[i], "inputs", inputs, manifest.state.empty() ? "\"needs\"" : "\"needs\" and \"state\"");
+    check(at, manifest.checks[i], "outputs", outputs, manifest.state.empty() ? "\"gives\"" : "\"gives\" and \"state\"");
+  }
+}
+
 }  // namespace
 
 std::vector<Parameter> read_parameters(const json::Document& document, const units::Units& units) {
@@ -273,52 +299,18 @@ void check_dimensions(const json::Document& document, const Manifest& manifest) 
   }
 }
 
-namespace {
-
-void check_reference_numbers(const json::Document& document, const Manifest& manifest, const std::string& place) {
-  std::vector<std::string> parameters;
-  for (const Parameter& parameter : manifest.parameters) parameters.push_back(parameter.name);
-  const auto check = [&](const std::string& at, const Json& entry, const char* key,
-                         const std::vector<std::string>& known, const char* what) {
-    const Json members = entry.value(key, Json::object());
-    for (const auto& [name, value] : members.items()) {
-      if (name.starts_with("x-") || holds(known, name)) continue;
-      throw Error(Cause::plugin_refused, document.key_place(json::child_pointer(at + '/' + key, name)),
-                  in_quotes(name) + " is not among this model's " + what + did_you_mean(name, known) + "\n  " + what +
-                      ": " + listed(known));
-    }
-  };
-  std::vector<std::string> inputs = manifest.needs, outputs = manifest.gives;
-  for (const StateVariable& variable : manifest.state) {
-    inputs.push_back(variable.name);
-    outputs.push_back(variable.name);
-  }
-  for (std::size_t i = 0; i < manifest.checks.size(); ++i) {
-    const std::string at = place + "/checks/" + std::to_string(i);
-    check(at, manifest.checks[i], "parameters", parameters, "parameters");
-    check(at, manifest.checks[i], "inputs", inputs, manifest.state.empty() ? "\"needs\"" : "\"needs\" and \"state\"");
-    check(at, manifest.checks[i], "outputs", outputs, manifest.state.empty() ? "\"gives\"" : "\"gives\" and \"state\"");
-  }
-}
-
-}  // namespace
-
 void check_quantities(const json::Document& document, const Manifest& manifest, const std::string& at) {
   check_names(document, at, "needs", manifest.needs, inputs_of(manifest.kind, manifest.dimension()), manifest);
   check_names(document, at, "gives", manifest.gives, outputs_of(manifest.kind, manifest.dimension()), manifest);
   check_reference_numbers(document, manifest, at);
-  switch (manifest.kind) {
-    case ModelKind::collision:
-      if (!manifest.needs_input("populations")) refuse(document, "/needs", "a collision model needs \"populations\"");
-      if (!manifest.gives_output("populations")) refuse(document, "/gives", "a collision model gives \"populations\"");
-      break;
-    case ModelKind::membrane:
-      check_element(document, manifest, at);
-      break;
-    case ModelKind::interaction:
-      if (!manifest.gives_output("force")) refuse(document, "/gives", "an interaction model must give \"force\"");
-      break;
-  }
+  const bool collides = manifest.kind == ModelKind::collision;
+  if (collides && !manifest.needs_input("populations"))
+    refuse(document, "/needs", "a collision model needs \"populations\"");
+  if (collides && !manifest.gives_output("populations"))
+    refuse(document, "/gives", "a collision model gives \"populations\"");
+  if (manifest.kind == ModelKind::membrane) check_element(document, manifest, at);
+  if (manifest.kind == ModelKind::interaction && !manifest.gives_output("force"))
+    refuse(document, "/gives", "an interaction model must give \"force\"");
 }
 
 void check_parameter_values(const json::Document& document, const Manifest& manifest, const char* key,

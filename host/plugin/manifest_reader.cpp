@@ -1,15 +1,10 @@
 #include "manifest_reader.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cmath>
-#include <cstring>
-#include <limits>
 #include <set>
 
 #include "base/error.hpp"
 #include "base/input_file.hpp"
-#include "json/document.hpp"
 #include "json/schema.hpp"
 #include "manifest_fields.hpp"
 #include "trust.hpp"

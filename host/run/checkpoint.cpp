@@ -9,7 +9,6 @@
 
 #include "checkpoint_match.hpp"
 #include "core/solver/in_order.hpp"
-#include "run_state.hpp"
 #include "saved_cells.hpp"
 
 namespace rouleau::run {

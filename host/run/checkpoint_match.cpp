@@ -125,6 +125,18 @@ void complete_values(Json& values) {
   if (values.size() < columns && next == values.size()) values = complete;
 }
 
+/// Takes note of how the checkpoint's run differs from this one, or refuses it.
+void accept_differences(Resumption& resumption, const plan::Plan& plan, bool force) {
+  const files::CheckpointReader& checkpoint = *resumption.checkpoint;
+  const Json facts = checkpoint.facts();
+  const std::vector<Difference> found = differences(facts, plan, facts.at("stage"));
+  const bool harmless = std::all_of(found.begin(), found.end(), [](const Difference& d) { return d.harmless; });
+  if (!found.empty() && !(harmless && force)) {
+    throw refusal(checkpoint.path(), facts, found, harmless);
+  }
+  for (const Difference& difference : found) resumption.accepted.push_back(difference.what);
+}
+
 }  // namespace
 
 Json checkpoint_facts(const plan::Plan& plan, const RunState& state, int threads) {
@@ -158,22 +170,6 @@ std::vector<Difference> differences(const Json& facts, const plan::Plan& plan, i
   compare_plugins(facts.at("plugins"), plan, found);
   return found;
 }
-
-namespace {
-
-/// Takes note of how the checkpoint's run differs from this one, or refuses it.
-void accept_differences(Resumption& resumption, const plan::Plan& plan, bool force) {
-  const files::CheckpointReader& checkpoint = *resumption.checkpoint;
-  const Json facts = checkpoint.facts();
-  const std::vector<Difference> found = differences(facts, plan, facts.at("stage"));
-  const bool harmless = std::all_of(found.begin(), found.end(), [](const Difference& d) { return d.harmless; });
-  if (!found.empty() && !(harmless && force)) {
-    throw refusal(checkpoint.path(), facts, found, harmless);
-  }
-  for (const Difference& difference : found) resumption.accepted.push_back(difference.what);
-}
-
-}  // namespace
 
 Resumption open_checkpoint(const std::filesystem::path& directory, const plan::Plan& plan, bool force) {
   Resumption resumption;

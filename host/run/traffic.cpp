@@ -1,7 +1,6 @@
 #include "traffic.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
