@@ -70,9 +70,9 @@ std::vector<Trial> some_trials(const Subject& subject, Random& random) {
   return trials(subject, random, subject.typical_setting(), 3);
 }
 
-/// Lets the model's function make no system call, and counts what it allocates and how often it asks for the time. Where
-/// the processor obeys (some virtual machines' do not), it may not read its own clock either. As there is no way back, the
-/// thread ends after the call.
+/// Lets the model's function make no system call, and counts what it allocates and how often it asks for the time.
+/// Where the processor obeys (some virtual machines' do not), it may not read its own clock either. As there is no way
+/// back, the thread ends after the call.
 class QuietWatch : public CallWatch {
  public:
   std::atomic<bool> done{false};
