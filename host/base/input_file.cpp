@@ -138,9 +138,8 @@ std::string sha256(const std::filesystem::path& file) {
   char digest[SHA256_DIGEST_STRING_LENGTH] = {};
   static_cast<void>(InputFile(file));
   errno = 0;
-  if (SHA256File(file.c_str(), digest) == nullptr) {
+  if (SHA256File(file.c_str(), digest) == nullptr)
     throw Error(Cause::input_output, Place{file.string()}, std::string("cannot be read: ") + std::strerror(errno));
-  }
   return digest;
 }
 

@@ -23,9 +23,8 @@ std::size_t spelling_distance(std::string_view a, std::string_view b) {
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const bool same = lower(a[i - 1]) == lower(b[j - 1]);
       row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (same ? 0 : 1)});
-      if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1])) {
+      if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]))
         row[j] = std::min(row[j], before[j - 2] + 1);
-      }
     }
     before.swap(last);
     last.swap(row);
@@ -44,9 +43,8 @@ Character next_character(std::string_view text) {
   const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0U; };
   const auto follows = [&](std::size_t k) { return (byte(k) & 0xC0U) == 0x80U; };
   if ((byte(0) & 0xE0U) == 0xC0U && follows(1)) return {(byte(0) & 0x1FU) << 6 | (byte(1) & 0x3FU), 2};
-  if ((byte(0) & 0xF0U) == 0xE0U && follows(1) && follows(2)) {
+  if ((byte(0) & 0xF0U) == 0xE0U && follows(1) && follows(2))
     return {(byte(0) & 0x0FU) << 12 | (byte(1) & 0x3FU) << 6 | (byte(2) & 0x3FU), 3};
-  }
   if ((byte(0) & 0xF8U) == 0xF0U && follows(1) && follows(2) && follows(3)) return {0x10000, 4};
   return {byte(0), 1};
 }
@@ -213,20 +211,17 @@ std::string reflowed(std::string_view text, std::size_t width) {
     return at < joined.size() && joined[at] != ' ' && joined[at] != '\n';
   };
   std::size_t line = 0;  // where the present one begins
-  for (std::size_t end = joined.find('\n'); end != std::string::npos; end = joined.find('\n', end + 1)) {
-    if (in_paragraph(line) && in_paragraph(end + 1)) {
+  for (std::size_t end = joined.find('\n'); end != std::string::npos; end = joined.find('\n', end + 1))
+    if (in_paragraph(line) && in_paragraph(end + 1))
       joined[end] = ' ';
-    } else {
+    else
       line = end + 1;
-    }
-  }
   return folded(joined, width);
 }
 
 std::string indented(std::string problem) {
-  for (auto at = problem.find('\n'); at != std::string::npos; at = problem.find('\n', at + 1)) {
+  for (auto at = problem.find('\n'); at != std::string::npos; at = problem.find('\n', at + 1))
     problem.insert(at + 1, "  ");
-  }
   return problem;
 }
 

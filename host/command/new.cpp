@@ -87,9 +87,8 @@ const Template& template_of(const std::string& kind, const std::string& dimensio
     if (kind == entry.kind && (dimensions.empty() || dimensions == entry.dimensions)) return entry;
     if (kinds.empty() || kinds.back() != entry.kind) kinds.emplace_back(entry.kind);
   }
-  if (kind == "membrane") {
+  if (kind == "membrane")
     throw Error(Cause::bad_input, "rouleau new membrane: --dimensions is 2, 3 or both, not " + in_quotes(dimensions));
-  }
   kinds.emplace_back("scene");
   throw Error(Cause::bad_input, "rouleau new: there is no kind " + in_quotes(kind) + did_you_mean(kind, kinds) +
                                     "\n  there are: " + listed(kinds));
@@ -114,12 +113,10 @@ Name checked_name(const std::string& id) {
         "most; a reverse domain name has '.' between its parts, such as org.example.yukawa");
   }
   Name name{id, id.substr(id.rfind('.') + 1), {}};
-  if (std::isdigit(static_cast<unsigned char>(name.file.front())) != 0) {
+  if (std::isdigit(static_cast<unsigned char>(name.file.front())) != 0)
     refuse("must have a last part that begins with a letter, because the C++ type is named after it");
-  }
-  for (const char* reserved : {"all", "clean", "help", "install", "package", "rouleau", "test"}) {
+  for (const char* reserved : {"all", "clean", "help", "install", "package", "rouleau", "test"})
     if (name.file == reserved) refuse("cannot be built: CMake has a target " + in_quotes(name.file) + " of its own");
-  }
   bool begins = true;
   for (const char c : name.file) {
     if (c != '-') name.type += begins ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
@@ -127,18 +124,16 @@ Name checked_name(const std::string& id) {
   }
   if (name.type.size() < 3) name.type += "Model";  // the formula's own letters
   const plugin::Catalog installed(plugin::plugin_search_path({}, {}));
-  for (const plugin::Manifest& manifest : installed.manifests()) {
+  for (const plugin::Manifest& manifest : installed.manifests())
     if (manifest.id == id) refuse("is the id of a model that is installed already: " + manifest.file.string());
-  }
   return name;
 }
 
 std::string filled(std::string_view text, const Name& name) {
   std::string result(text);
   const auto replace = [&](std::string_view mark, const std::string& word) {
-    for (auto at = result.find(mark); at != std::string::npos; at = result.find(mark, at + word.size())) {
+    for (auto at = result.find(mark); at != std::string::npos; at = result.find(mark, at + word.size()))
       result.replace(at, mark.size(), word);
-    }
   };
   replace("model-id", name.id);
   replace("model-name", name.file);

@@ -83,11 +83,10 @@ void remove_files(const std::filesystem::path& directory, Choice chosen) {
   for (const auto& entry : std::filesystem::directory_iterator(directory)) {
     if (!chosen(entry.path().filename().string())) continue;
     std::error_code error;
-    if (const auto name = entry.path().filename(); name == companions_folder || name == refined_folder) {
+    if (const auto name = entry.path().filename(); name == companions_folder || name == refined_folder)
       std::filesystem::remove_all(entry.path(), error);
-    } else {
+    else
       std::filesystem::remove(entry.path(), error);
-    }
     if (error) fail_file(entry.path(), "of a former run cannot be removed", error.value());
   }
 }
@@ -155,9 +154,8 @@ std::filesystem::path unused_directory(const std::filesystem::path& wanted) {
     const bool taken = std::filesystem::exists(std::filesystem::symlink_status(directory));
     if (!taken) fail_file(directory, "cannot be made", error ? error.value() : EIO);
     std::error_code ignored;
-    if (std::filesystem::is_directory(directory, ignored) && std::filesystem::is_empty(directory, ignored)) {
+    if (std::filesystem::is_directory(directory, ignored) && std::filesystem::is_empty(directory, ignored))
       return directory;
-    }
   }
 }
 

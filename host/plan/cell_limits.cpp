@@ -206,10 +206,9 @@ void measure(const scene::Scene& scene, StartGaps& gaps) {
   const core::Cells<D> cells = make_known_cells<D>(scene, [](int) { return true; });
   const core::Domain<D> domain = scene::lattice_domain<D>(scene);
   gaps.cells = std::min(gaps.cells, gap_between(cells, domain));
-  if (const core::RegionPointer<D> region = scene::fluid_region<D>(scene)) {
+  if (const core::RegionPointer<D> region = scene::fluid_region<D>(scene))
     for (const core::CellRange& cell : cells.cells)
       gaps.region = std::min(gaps.region, core::nearest_to_border(cells, cell, *region).distance);
-  }
   if (scene.domain.tube_radius) return;
   const auto& places = cells.position;
   for (int k = 1; k < D; ++k) {

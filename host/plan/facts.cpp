@@ -264,12 +264,10 @@ scene::Attractions attracting_types(const Models& models, const std::vector<Inte
 
 double deepest_well(const Models& models, const std::vector<InteractionWell>& wells) {
   double deepest = std::nan("");
-  for (const PlannedModel& model : models.interactions) {
+  for (const PlannedModel& model : models.interactions)
     if (models.has_cells && !model.remembers()) deepest = 0;
-  }
-  for (const InteractionWell& described : wells) {
+  for (const InteractionWell& described : wells)
     if (described.well.attracts()) deepest = std::max(deepest, described.well.depth);
-  }
   return deepest;
 }
 

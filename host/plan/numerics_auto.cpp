@@ -100,18 +100,15 @@ std::string NumericsProblem::why_density_factor(const Trial& best, std::size_t s
   const ErrorShares error = error_of(flow, factor, compression_of(spacing_of(best.nodes), best.tau));
   std::string why = "simulated Reynolds number " + number(momentum_time_ * flow.rate * factor, 3) + ": " +
                     number(100 * error.inertia, 2) + " % of error";
-  if (error.start > 0) {
-    why += ", and " + number(100 * error.start, 2) + " % by the start of the flow" + gain;
-  }
+  if (error.start > 0) why += ", and " + number(100 * error.start, 2) + " % by the start of the flow" + gain;
   if (limited) why += "; more is beyond a limit of the plan";
   return why;
 }
 
 std::optional<std::size_t> NumericsProblem::least_dense(const Trial& best) const {
   std::optional<std::size_t> least;
-  for (std::size_t i = 0; i < flows_.size(); ++i) {
+  for (std::size_t i = 0; i < flows_.size(); ++i)
     if (!flows_[i].given_factor && (!least || best.density_factors[i] < best.density_factors[*least])) least = i;
-  }
   return least;
 }
 
@@ -126,10 +123,9 @@ void NumericsProblem::choose_density_factors(const Trial& best, NumericsChoice& 
                              why_density_factor(best, stage, gain)});
   };
   choose("/numerics", *least);
-  for (std::size_t i = 0; i < flows_.size(); ++i) {
+  for (std::size_t i = 0; i < flows_.size(); ++i)
     if (!flows_[i].given_factor && best.density_factors[i] > much * best.density_factors[*least])
       choose(scene_.stages[i].pointer, i);
-  }
 }
 
 /// What flows that are developed from the start would save; empty: little.

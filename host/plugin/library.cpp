@@ -102,9 +102,8 @@ fs::path library_file(const Manifest& manifest) {
                : "does not exist; it must lie in the folder of its manifest\n  " + loader_words(manifest.library));
   }
   if (error) refuse(manifest, "cannot be opened: " + error.message());
-  if (library.parent_path() != folder) {
+  if (library.parent_path() != folder)
     refuse(manifest, "leads out of the folder of its manifest, to " + library.string());
-  }
   if (!fs::is_regular_file(library, error)) refuse(manifest, "is not a regular file");
   return library;
 }
@@ -273,9 +272,8 @@ std::string model_fault(const rouleau_model& model, const Manifest& manifest) {
     return "has version " + (model.version == nullptr ? "(none)" : std::string(model.version)) + " of " +
            in_quotes(manifest.id) + ", its manifest is for version " + manifest.version;
   }
-  if (model.create == nullptr || model.destroy == nullptr) {
+  if (model.create == nullptr || model.destroy == nullptr)
     return "has no create or no destroy function in its model " + in_quotes(manifest.id);
-  }
   return table_fault(model);
 }
 
@@ -295,9 +293,8 @@ fs::path checked_library(const Manifest& manifest) {
              {manifest.locked->renewal});
     }
   }
-  if (const std::string reason = reason_not_loadable(file, ROULEAU_OPEN_SYMBOL); !reason.empty()) {
+  if (const std::string reason = reason_not_loadable(file, ROULEAU_OPEN_SYMBOL); !reason.empty())
     refuse(manifest, reason);
-  }
   return file;
 }
 
@@ -344,17 +341,15 @@ void require_unchanged(const ProcessState& before, const Manifest& manifest, con
 }
 
 FoundModel find_model(const rouleau_plugin& plugin, const Manifest& manifest) {
-  if (plugin.struct_size < smallest_plugin) {
+  if (plugin.struct_size < smallest_plugin)
     return {nullptr, size_fault("rouleau_plugin", plugin.struct_size, smallest_plugin)};
-  }
   if (plugin.models == nullptr) return {nullptr, "holds no list of models"};
   std::vector<std::string> ids;
   for (const rouleau_model* const* entry = plugin.models; *entry != nullptr; ++entry) {
     const rouleau_model& model = **entry;
     // A broken model beside the wanted one is no reason to refuse that, as long as its name can be read.
-    if (model.struct_size < smallest_named_model) {
+    if (model.struct_size < smallest_named_model)
       return {nullptr, size_fault("rouleau_model", model.struct_size, smallest_model)};
-    }
     if (model.id == nullptr) return {nullptr, "holds a model without an id"};
     if (model.id == manifest.id) {
       std::string fault = model_fault(model, manifest);

@@ -46,9 +46,8 @@ void add_nodes(Json& result, const observe::OutlineSnapshot& s, std::size_t stri
       origin.push_back(std::isfinite(middle) ? middle : 0);
       origins.push_back(std::round(origin.back() * micro * 1000) / 1000);
     }
-    for (std::size_t i = begin; i < end; i += stride) {
+    for (std::size_t i = begin; i < end; i += stride)
       for (std::size_t k = 0; k < along.size(); ++k) append_place(bytes, (*along[k])[i] - origin[k], quantum);
-    }
   }
   result["origin_um"].push_back(std::move(origins));
   result["nodes"].push_back(base64(bytes));
@@ -72,9 +71,8 @@ class Meshes {
     std::vector<std::string> meshes(number_.size());
     for (const auto& [triangles, number] : number_) {
       std::vector<unsigned char> bytes;
-      for (const auto& corners : triangles) {
+      for (const auto& corners : triangles)
         for (const int node : corners) append_number(bytes, node);
-      }
       meshes[number] = base64(bytes);
     }
     result["meshes"] = meshes;
@@ -232,18 +230,15 @@ nlohmann::json wall_data(const files::FrameReader& reader) {
                       {"first", walls.first},
                       {"segments", walls.segments},
                       {"surface", nullptr}};
-  for (const auto& corner : walls.corners) {
+  for (const auto& corner : walls.corners)
     for (const double metres : corner) data["corners_um"].push_back(std::round(metres * micro * 1000) / 1000);
-  }
   if (walls.triangles.empty()) return data;
   const double quantum = quantum_of(reader.size());
   std::vector<unsigned char> points, triangles;
-  for (const auto& point : walls.points) {
+  for (const auto& point : walls.points)
     for (const double metres : point) append_place(points, metres, quantum);
-  }
-  for (const auto& corners : walls.triangles) {
+  for (const auto& corners : walls.triangles)
     for (const int corner : corners) append_number(triangles, corner);
-  }
   data["surface"] = {{"quantum_um", quantum * micro}, {"points", base64(points)}, {"triangles", base64(triangles)}};
   return data;
 }

@@ -217,9 +217,8 @@ void RigidSurface::make_map() {
       }
     }
   }
-  for (std::size_t i = 0; i < map_.size(); ++i) {
+  for (std::size_t i = 0; i < map_.size(); ++i)
     if (!outside[i]) map_[i] = -map_[i];
-  }
 }
 
 double RigidSurface::distance(const Place<3>& point, double at_most) const {

@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "base/text.hpp"
+#include "core/geometry/border.hpp"
 #include "core/geometry/faceted.hpp"
 #include "core/geometry/formulas.hpp"
-#include "core/geometry/border.hpp"
 #include "formats/image_file.hpp"
 #include "formats/mesh_file.hpp"
 #include "surface.hpp"
@@ -78,9 +78,8 @@ core::Border<D> opened(core::Border<D> border, const core::Domain<D>& domain) {
       border.facets.push_back(facet);
     }
   }
-  for (std::size_t i = 0; i < own.facets.size(); ++i) {
+  for (std::size_t i = 0; i < own.facets.size(); ++i)
     if (!is_end[i]) border.facets.push_back(own.facets[i]);
-  }
   return border;
 }
 

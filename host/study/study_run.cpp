@@ -54,20 +54,18 @@ void StudyRun::prepare() {
                              trial::threads_of(study_.axes, all[i], study_.threads)});
     prepare_point(state_.points.back());
   }
-  for (MatrixPoint& point : state_.points) {
+  for (MatrixPoint& point : state_.points)
     if (runs_missing(point) > 0 && !campaign_.interrupted()) plan_point(point);
-  }
 }
 
 void StudyRun::prepare_point(MatrixPoint& point) {
   point.fingerprint = trial::fingerprint(point.scene, study_.scene_file,
                                          {"threads " + std::to_string(point.threads), run::machine_description()});
   point.record = campaign_.find(point.fingerprint);
-  if (point.record) {
+  if (point.record)
     measure_point(study_, point, campaign_.directory_of(point.fingerprint));
-  } else {
+  else
     point.left_out = "not yet run";
-  }
 }
 
 void StudyRun::plan_point(MatrixPoint& point) {
@@ -93,9 +91,8 @@ double StudyRun::expected_s(const MatrixPoint& point) const {
 /// Cheapest first.
 std::vector<MatrixPoint*> StudyRun::missing_points() {
   std::vector<MatrixPoint*> missing;
-  for (MatrixPoint& point : state_.points) {
+  for (MatrixPoint& point : state_.points)
     if (runs_missing(point) > 0) missing.push_back(&point);
-  }
   std::stable_sort(missing.begin(), missing.end(),
                    [&](const MatrixPoint* a, const MatrixPoint* b) { return expected_s(*a) < expected_s(*b); });
   return missing;

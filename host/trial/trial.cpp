@@ -48,9 +48,8 @@ nlohmann::json moved_scene(const Trial& trial) {
     });
   }
   if (!scene.is_object() || !scene.contains("plugin_dirs") || !scene["plugin_dirs"].is_array()) return scene;
-  for (auto& entry : scene["plugin_dirs"]) {
+  for (auto& entry : scene["plugin_dirs"])
     if (entry.is_string()) entry = (folder / entry.get<std::string>()).lexically_normal().string();
-  }
   return scene;
 }
 
@@ -65,12 +64,9 @@ std::vector<std::string> scene_arguments(const std::string& command, const Trial
   std::vector<std::string> arguments{command, scene_file_of(trial).string()};
   const fs::path lock = trial.lock.empty() ? plugin::lock_beside(trial.scene_file) : trial.lock;
   std::error_code ignored;
-  if (!trial.lock.empty() || fs::exists(fs::symlink_status(lock, ignored))) {
+  if (!trial.lock.empty() || fs::exists(fs::symlink_status(lock, ignored)))
     arguments.insert(arguments.end(), {"--lock", lock.string()});
-  }
-  for (const fs::path& folder : trial.plugin_dirs) {
-    arguments.insert(arguments.end(), {"--plugin-dir", folder.string()});
-  }
+  for (const fs::path& folder : trial.plugin_dirs) arguments.insert(arguments.end(), {"--plugin-dir", folder.string()});
   return arguments;
 }
 

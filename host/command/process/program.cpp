@@ -25,10 +25,9 @@ std::vector<std::string> known_options;
 /// Empty where the command has none.
 std::string option_for(Way way) {
   const auto first_of = [](std::initializer_list<const char*> names) -> std::string {
-    for (const char* name : names) {
+    for (const char* name : names)
       if (std::find(known_options.begin(), known_options.end(), name) != known_options.end())
         return std::string("--") + name;
-    }
     return {};
   };
   if (way == Way::elsewhere) return first_of({"out", "dir"});
@@ -68,11 +67,10 @@ nlohmann::json as_json(const Error& error) {
 /// One line for programs that start this one.
 int fail_in_json(const Error& error, int code) {
   nlohmann::json faults = nlohmann::json::array();
-  if (const auto* several = dynamic_cast<const SeveralFaults*>(&error)) {
+  if (const auto* several = dynamic_cast<const SeveralFaults*>(&error))
     for (const Error& fault : several->faults()) faults.push_back(as_json(fault));
-  } else {
+  else
     faults.push_back(as_json(error));
-  }
   nlohmann::json line = {{"faults", faults}, {"exit_code", code}};
   Crew* const crew = Crew::present();
   if (crew != nullptr && !crew->first()) line["rank"] = crew->name();

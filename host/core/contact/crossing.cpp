@@ -29,9 +29,8 @@ void collect(const Membranes& membranes, const CellRange& cell, const Vec<2>& mo
     const Segment segment{i, next, node(i), node(next)};
     if (segment.x_min() > box.most[0] || segment.x_max() < box.least[0]) continue;
     if (std::min(segment.from.y(), segment.to.y()) > box.most[1] ||
-        std::max(segment.from.y(), segment.to.y()) < box.least[1]) {
+        std::max(segment.from.y(), segment.to.y()) < box.least[1])
       continue;
-    }
     segments.push_back(segment);
   }
   std::sort(segments.begin(), segments.end(), [](const Segment& a, const Segment& b) { return a.x_min() < b.x_min(); });
@@ -92,9 +91,8 @@ class PairCheck {
     const bool same = a == b && shift == ImageShift{};
     collect(membranes_, cell, Vec<2>::Zero(), common, own_);
     if (!same) collect(membranes_, other, move, common, other_);
-    if (const auto found = sweep(own_, same ? own_ : other_, same)) {
+    if (const auto found = sweep(own_, same ? own_ : other_, same))
       return Crossing{a, b, shift, found->node, found->place, false};
-    }
     if (same) return std::nullopt;
     if (contains(moved, own)) {
       const Vec<2> node = first_node(cell);

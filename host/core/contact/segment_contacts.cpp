@@ -32,9 +32,8 @@ struct Search {
     const SearchTask t = *task;
     int count = t.count;
     const S move_x = t.move_x, move_y = t.move_y;
-    for (const NeighbourList::Group* group = t.groups; group != t.groups_end; ++group) {
+    for (const NeighbourList::Group* group = t.groups; group != t.groups_end; ++group)
       count = append<S>(t, *group, move_x, move_y, count);
-    }
     task->count = count;
   }
 

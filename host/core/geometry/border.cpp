@@ -39,9 +39,8 @@ void weld(Border<D>& border, double distance) {
     number.push_back(found);
   }
   border.corners = std::move(corners);
-  for (auto& facet : border.facets) {
+  for (auto& facet : border.facets)
     for (int& corner : facet) corner = number[corner];
-  }
 }
 
 template <int D>
@@ -149,9 +148,8 @@ class Finder {
   }
   /// What lies beyond the domain's own walls, or openings, half a spacing away from nodes, is put on them.
   [[nodiscard]] Vec<D> within(Vec<D> place) const {
-    for (int k = 0; k < D; ++k) {
+    for (int k = 0; k < D; ++k)
       if (!domain_.periodic[k]) place[k] = std::clamp(place[k], -0.5, domain_.size[k] - 0.5);
-    }
     return place;
   }
 
@@ -164,9 +162,8 @@ class Finder {
 template <int D>
 Border<D> border_of_region(const Region<D>& region, const Domain<D>& domain) {
   Box<D> all{{}, domain.size};
-  for (int k = 0; k < D; ++k) {
+  for (int k = 0; k < D; ++k)
     if (!domain.periodic[k]) all.begin[k] = -1;
-  }
   Finder<D> finder(region, domain);
   finder.find(all);
   return std::move(finder.border);
@@ -202,11 +199,10 @@ template Border<3> zero_border<3>(const std::vector<double>&, const std::array<i
 template <int D>
 Vec<D> Border<D>::normal(const std::array<int, D>& facet) const {
   const Vec<D> along = corners[facet[1]] - corners[facet[0]];
-  if constexpr (D == 2) {
+  if constexpr (D == 2)
     return {along[1], -along[0]};
-  } else {
+  else
     return along.cross(corners[facet[2]] - corners[facet[0]]);
-  }
 }
 
 template <int D>

@@ -29,11 +29,10 @@ std::size_t ContactMemory::keep(const ContactVariable& wanted) {
     return v.potential == wanted.potential && v.name == wanted.name;
   });
   const auto variable = static_cast<std::size_t>(found - variables.begin());
-  if (found == variables.end()) {
+  if (found == variables.end())
     variables.push_back(wanted);
-  } else {
+  else
     change_unit(variable, wanted.unit);
-  }
   return variable;
 }
 

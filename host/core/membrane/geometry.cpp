@@ -42,9 +42,8 @@ double nearest(const Membranes& membranes, const CellRange& cell, const Bounding
   const double dx = std::max({0.0, box.least[0] - point.x(), point.x() - box.most[0]});
   const double dy = std::max({0.0, box.least[1] - point.y(), point.y() - box.most[1]});
   if (!(dx * dx + dy * dy <= best)) return best;
-  for (int j = cell.first; j < cell.end(); ++j) {
+  for (int j = cell.first; j < cell.end(); ++j)
     best = std::min(best, square_distance(point, node(membranes, j), node(membranes, cell.next(j))));
-  }
   return best;
 }
 
@@ -62,9 +61,8 @@ double enclosed_area(const Membranes& membranes, const CellRange& cell) {
   // Relative to the first node: far from the origin the digits would cancel otherwise.
   const Vec<2> origin = node(membranes, cell.first);
   double twice = 0;
-  for (int i = cell.first; i < cell.end(); ++i) {
+  for (int i = cell.first; i < cell.end(); ++i)
     twice += cross(node(membranes, i) - origin, node(membranes, cell.next(i)) - origin);
-  }
   return twice / 2;
 }
 

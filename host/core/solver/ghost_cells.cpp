@@ -16,9 +16,8 @@ namespace {
 template <int D>
 bool lies_inside(const BoundingBox<D>& box, double reach, const Domain<D>& domain) {
   if (!box.usable()) return false;
-  for (int k = 0; k < D; ++k) {
+  for (int k = 0; k < D; ++k)
     if (!domain.periodic[k] && !(box.least[k] - reach >= 0 && box.most[k] + reach <= domain.size[k] - 1)) return false;
-  }
   bool inside = true;
   for_nodes_near(box, reach, 1, domain, [&](const Box<D>& nodes) { inside = inside && domain.block.holds(nodes); });
   return inside;

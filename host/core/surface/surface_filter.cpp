@@ -30,9 +30,8 @@ Matrix stiffness_of_shape(const RestSurface& rest) {
     const double with_first[3] = {g11 + 2 * g12 + g22, -(g11 + g12), -(g12 + g22)};
     const double product[3][3] = {
         {with_first[0], with_first[1], with_first[2]}, {with_first[1], g11, g12}, {with_first[2], g12, g22}};
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) entries.emplace_back(corner[i], corner[j], rest.triangle_area[t] * product[i][j]);
-    }
   }
   Matrix matrix(mesh.node_count(), mesh.node_count());
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -237,9 +236,8 @@ void SurfaceFilter::apply(const std::array<double*, 3>& force, const std::array<
   const double* const filtered = apply_polynomial(
       {static_cast<int>(count), neighbours_.first.data(), neighbours_.entry.data(), own_.data(), weight_.data()},
       series_, room);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i)
     for (std::size_t k = 0; k < 3; ++k) force[k][i] = held[k][i] + filtered[4 * i + k];
-  }
 }
 
 }  // namespace rouleau::core

@@ -87,9 +87,8 @@ TriangleSurface unit_sphere(int n) {
     if (is_new) {
       // On an edge this divides the arc evenly, and all three corners of a face are alike.
       Vec<3> place = Vec<3>::Zero();
-      for (const auto& [corner, share] : key) {
+      for (const auto& [corner, share] : key)
         if (share > 0) place += std::sin(share * step) * solid.corner[corner];
-      }
       sphere.nodes.push_back(place.normalized());
     }
     return found->second;
