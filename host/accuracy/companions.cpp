@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 #include <numeric>
 #include <optional>
@@ -16,7 +15,6 @@
 #include "scene/lattice.hpp"
 #include "scene/stage_scales.hpp"
 #include "shape/extent.hpp"
-#include "shape/outline.hpp"
 
 namespace rouleau::accuracy {
 
@@ -110,9 +108,8 @@ void set_density(Json& scene, double factor) {
     holder["density_factor"] = factor * holder.value("density_factor", otherwise);
   };
   scale(scene["numerics"], 1);
-  for (Json& stage : scene["stages"]) {
+  for (Json& stage : scene["stages"])
     if (stage.contains("density_factor")) scale(stage, 1);
-  }
 }
 
 Json on_lattice(const scene::Scene& scene, const LatticeSize& nodes) {
@@ -271,9 +268,8 @@ void add_runs(const scene::Scene& scene, const CoarserLattices& lattices, const 
     last = static_cast<int>(chosen.runs.size()) - 1;
   };
   if (changes.start) {
-    for (std::size_t i = 0; i < scene.stages.size(); ++i) {
+    for (std::size_t i = 0; i < scene.stages.size(); ++i)
       if (starts_at_rest(scene.stages[i], scene)) companion["stages"][i]["start"] = "developed";
-    }
     add_change(Role::start, "the flow developed from the start");
   }
   if (changes.inertia) {

@@ -74,20 +74,11 @@ std::string words_of(const Shares& shares, const std::vector<Measured>& measured
   std::string words;
   for (const Measured& companion : measured) {
     if (!words.empty()) words += ", ";
-    switch (companion.role) {
-      case Role::lattice:
-        words += "lattice " + number(shares.lattice, 2) + " (" + companion.differs + ")";
-        break;
-      case Role::order:
-        words += "its order by " + companion.differs;
-        break;
-      case Role::start:
-        words += "start " + number(shares.start, 2) + " (" + companion.differs + ")";
-        break;
-      case Role::inertia:
-        words += "relaxed density " + number(shares.inertia, 2) + " (" + companion.differs + ")";
-        break;
-    }
+    const std::string differs = " (" + companion.differs + ")";
+    if (companion.role == Role::lattice) words += "lattice " + number(shares.lattice, 2) + differs;
+    if (companion.role == Role::order) words += "its order by " + companion.differs;
+    if (companion.role == Role::start) words += "start " + number(shares.start, 2) + differs;
+    if (companion.role == Role::inertia) words += "relaxed density " + number(shares.inertia, 2) + differs;
   }
   return words;
 }

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <iostream>
 #include <memory>
-#include <optional>
 
 #include "base/error.hpp"
 #include "base/input_file.hpp"
@@ -105,9 +104,8 @@ Ended run_companion(const Companion& companion, const Prepared& prepared, const 
   Ended ended{"refused", prepared.refused, folder / name_of(companion.role)};
   try {
     if (prepared.scene && finished_run(ended.directory, *prepared.scene) != Finished::no &&
-        files::verify(ended.directory).differences.empty()) {  // nothing of it had to wait for the disk
+        files::verify(ended.directory).differences.empty())  // nothing of it had to wait for the disk
       return {"completed", {}, ended.directory, trial::read_summary(ended.directory).at("wall_s")};
-    }
     if (!options.quiet) std::cerr << "error bar: " << companion.differs << std::endl;
     if (prepared.plan) {
       run::RunOptions run{.threads = std::clamp(prepared.scene->domain.nodes[1] / 4, 1, options.threads),
@@ -217,11 +215,10 @@ MeasuredErrors measure_errors(const fs::path& directory, const scene::Scene& sce
   errors.missing = round.missing;
   errors.interrupted = round.interrupted;
   if (errors.interrupted) return errors;
-  if (errors.missing.empty()) {
+  if (errors.missing.empty())
     errors.bars = error_bars(quantities, round.companions, round.measured);
-  } else {
+  else
     for (Quantity& quantity : quantities) errors.bars.push_back({std::move(quantity), {}, 0, {}, errors.missing});
-  }
   errors.share = errors.wall_s / run_s;
   Json sections = {{"error_bars", to_json(errors.bars)},
                    {"error_bar_runs",

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <set>
@@ -78,9 +77,8 @@ std::vector<CellColumns> read_cells(const std::filesystem::path& file, double en
     for (std::size_t k = 0; k < others.size(); ++k) cell.last[k] = others[k].empty() ? std::nan("") : others[k][i];
   }
   std::vector<CellColumns> there;
-  for (auto& [key, cell] : cells) {
+  for (auto& [key, cell] : cells)
     if (cell.rows > 0 && cell.time[cell.rows - 1] == last) there.push_back(std::move(cell));
-  }
   return there;
 }
 

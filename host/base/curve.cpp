@@ -16,10 +16,9 @@ double between(double a, double b, double share) { return a + share * (b - a); }
 }  // namespace
 
 double interpolated_at(const Column& x, const Column& y, double at) {
-  for (std::size_t i = 1; i < x.size(); ++i) {
+  for (std::size_t i = 1; i < x.size(); ++i)
     if ((x[i - 1] - at) * (x[i] - at) <= 0 && x[i] != x[i - 1])
       return between(y[i - 1], y[i], (at - x[i - 1]) / (x[i] - x[i - 1]));
-  }
   return not_a_value;
 }
 

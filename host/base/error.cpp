@@ -79,11 +79,10 @@ void Faults::add(const Error& fault) {
   const auto* several = dynamic_cast<const SeveralFaults*>(&fault);
   // When there are too many, whoever else collects along the way may give them back.
   if (faults_.size() < most_kept) {
-    if (several != nullptr) {
+    if (several != nullptr)
       faults_.insert(faults_.end(), several->faults().begin(), several->faults().end());
-    } else {
+    else
       faults_.push_back(fault);
-    }
   }
   if (faults_.size() >= most_kept) raise_all(true);
 }

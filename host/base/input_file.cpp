@@ -2,12 +2,9 @@
 
 #include <fcntl.h>
 #include <sha2.h>
-#include <sys/stat.h>
 #include <unistd.h>
 #include <algorithm>
-#include <array>
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
 #include <system_error>
 #include <utility>
@@ -141,9 +138,8 @@ std::string sha256(const std::filesystem::path& file) {
   char digest[SHA256_DIGEST_STRING_LENGTH] = {};
   static_cast<void>(InputFile(file));
   errno = 0;
-  if (SHA256File(file.c_str(), digest) == nullptr) {
+  if (SHA256File(file.c_str(), digest) == nullptr)
     throw Error(Cause::input_output, Place{file.string()}, std::string("cannot be read: ") + std::strerror(errno));
-  }
   return digest;
 }
 

@@ -189,9 +189,8 @@ double available_memory() {
     left = std::min(left, static_cast<double>(limit.rlim_cur) - pages * static_cast<double>(sysconf(_SC_PAGESIZE)));
   }
   double most = 0, used = 0;  // of a container; on the machine itself there is no such file, or it says "max"
-  if (std::ifstream("/sys/fs/cgroup/memory.max") >> most && std::ifstream("/sys/fs/cgroup/memory.current") >> used) {
+  if (std::ifstream("/sys/fs/cgroup/memory.max") >> most && std::ifstream("/sys/fs/cgroup/memory.current") >> used)
     left = std::min(left, most - used);
-  }
   return left;
 }
 

@@ -9,19 +9,10 @@ namespace rouleau {
 
 /// What somebody has done who was sent this signal: "has divided by zero, ...".
 inline const char* deed_of(int signal) {
-  switch (signal) {
-    case SIGSEGV:
-    case SIGBUS:
-      return "has used memory that it does not have (or too much of the stack)";
-    case SIGFPE:
-      return "has divided by zero, or switched on floating-point exceptions";
-    case SIGILL:
-      return "has come to an instruction that this processor does not have (or to a trap of its own)";
-    case SIGABRT:
-      return "has stopped the program (abort, or an assertion that failed)";
-    default:
-      return "has crashed";
-  }
+  if (signal == SIGSEGV || signal == SIGBUS) return "has used memory that it does not have (or too much of the stack)";
+  if (signal == SIGFPE) return "has divided by zero, or switched on floating-point exceptions";
+  if (signal == SIGILL) return "has come to an instruction that this processor does not have (or to a trap of its own)";
+  return signal == SIGABRT ? "has stopped the program (abort, or an assertion that failed)" : "has crashed";
 }
 
 /// Handlers of the calling thread run on this while it lives. Does nothing where the thread has such a stack already.

@@ -23,9 +23,8 @@ std::size_t spelling_distance(std::string_view a, std::string_view b) {
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const bool same = lower(a[i - 1]) == lower(b[j - 1]);
       row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (same ? 0 : 1)});
-      if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1])) {
+      if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]))
         row[j] = std::min(row[j], before[j - 2] + 1);
-      }
     }
     before.swap(last);
     last.swap(row);
@@ -44,9 +43,8 @@ Character next_character(std::string_view text) {
   const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0U; };
   const auto follows = [&](std::size_t k) { return (byte(k) & 0xC0U) == 0x80U; };
   if ((byte(0) & 0xE0U) == 0xC0U && follows(1)) return {(byte(0) & 0x1FU) << 6 | (byte(1) & 0x3FU), 2};
-  if ((byte(0) & 0xF0U) == 0xE0U && follows(1) && follows(2)) {
+  if ((byte(0) & 0xF0U) == 0xE0U && follows(1) && follows(2))
     return {(byte(0) & 0x0FU) << 12 | (byte(1) & 0x3FU) << 6 | (byte(2) & 0x3FU), 3};
-  }
   if ((byte(0) & 0xF8U) == 0xF0U && follows(1) && follows(2) && follows(3)) return {0x10000, 4};
   return {byte(0), 1};
 }
@@ -56,6 +54,43 @@ Character next_character(std::string_view text) {
 bool steers(unsigned code) {
   return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x61c || code == 0x200e || code == 0x200f ||
          (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+}
+
+/// Characters, not bytes: 10xxxxxx continue one.
+std::size_t length_of(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0U) != 0x80U; }));
+}
+
+/// Where a line goes on that is too long: below its last column, if that leaves room, or a little further in.
+std::size_t hanging_indent(std::string_view line, std::size_t width) {
+  const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
+  std::size_t column = begin == 0 ? 0 : begin + 2;  // paragraphs stand at the border
+  for (std::size_t gap = line.find("  ", begin); gap != std::string_view::npos; gap = line.find("  ", gap + 1)) {
+    const std::size_t next = line.find_first_not_of(' ', gap);
+    if (next != std::string_view::npos && length_of(line.substr(0, next)) <= width * 3 / 5)
+      column = length_of(line.substr(0, next));
+  }
+  return column;
+}
+
+std::string folded_line(std::string_view line, std::size_t width) {
+  if (length_of(line) <= width) return std::string(line);
+  const std::size_t indent = hanging_indent(line, width);
+  std::string text, row;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t word = std::min(line.find_first_not_of(' ', at), line.size());
+    const std::size_t end = std::min(line.find(' ', word), line.size());
+    const std::string_view piece = line.substr(at, end - at);
+    if (row.find_first_not_of(' ') != std::string::npos && length_of(row) + length_of(piece) > width) {
+      text += row + '\n';
+      row = std::string(indent, ' ') + std::string(line.substr(word, end - word));
+    } else {
+      row += piece;
+    }
+    at = end;
+  }
+  return text + row;
 }
 
 }  // namespace
@@ -159,47 +194,6 @@ std::string time_in_words(double seconds) {
   return seconds < 7200 ? rounded(seconds / 60, 2) + " min" : rounded(seconds / 3600, 2) + " h";
 }
 
-namespace {
-
-/// Characters, not bytes: 10xxxxxx continue one.
-std::size_t length_of(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0U) != 0x80U; }));
-}
-
-/// Where a line goes on that is too long: below its last column, if that leaves room, or a little further in.
-std::size_t hanging_indent(std::string_view line, std::size_t width) {
-  const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
-  std::size_t column = begin == 0 ? 0 : begin + 2;  // paragraphs stand at the border
-  for (std::size_t gap = line.find("  ", begin); gap != std::string_view::npos; gap = line.find("  ", gap + 1)) {
-    const std::size_t next = line.find_first_not_of(' ', gap);
-    if (next != std::string_view::npos && length_of(line.substr(0, next)) <= width * 3 / 5)
-      column = length_of(line.substr(0, next));
-  }
-  return column;
-}
-
-std::string folded_line(std::string_view line, std::size_t width) {
-  if (length_of(line) <= width) return std::string(line);
-  const std::size_t indent = hanging_indent(line, width);
-  std::string text, row;
-  for (std::size_t at = 0; at < line.size();) {
-    const std::size_t word = std::min(line.find_first_not_of(' ', at), line.size());
-    const std::size_t end = std::min(line.find(' ', word), line.size());
-    const std::string_view piece = line.substr(at, end - at);
-    if (row.find_first_not_of(' ') != std::string::npos && length_of(row) + length_of(piece) > width) {
-      text += row + '\n';
-      row = std::string(indent, ' ') + std::string(line.substr(word, end - word));
-    } else {
-      row += piece;
-    }
-    at = end;
-  }
-  return text + row;
-}
-
-}  // namespace
-
 std::string folded(std::string_view text, std::size_t width) {
   std::string result;
   for (std::size_t at = 0; at < text.size();) {
@@ -217,20 +211,17 @@ std::string reflowed(std::string_view text, std::size_t width) {
     return at < joined.size() && joined[at] != ' ' && joined[at] != '\n';
   };
   std::size_t line = 0;  // where the present one begins
-  for (std::size_t end = joined.find('\n'); end != std::string::npos; end = joined.find('\n', end + 1)) {
-    if (in_paragraph(line) && in_paragraph(end + 1)) {
+  for (std::size_t end = joined.find('\n'); end != std::string::npos; end = joined.find('\n', end + 1))
+    if (in_paragraph(line) && in_paragraph(end + 1))
       joined[end] = ' ';
-    } else {
+    else
       line = end + 1;
-    }
-  }
   return folded(joined, width);
 }
 
 std::string indented(std::string problem) {
-  for (auto at = problem.find('\n'); at != std::string::npos; at = problem.find('\n', at + 1)) {
+  for (auto at = problem.find('\n'); at != std::string::npos; at = problem.find('\n', at + 1))
     problem.insert(at + 1, "  ");
-  }
   return problem;
 }
 

@@ -1,5 +1,4 @@
 // rouleau limits LIMITS: where a model breaks, and how.
-#include <algorithm>
 #include <iostream>
 
 #include "base/error.hpp"
@@ -8,7 +7,6 @@
 #include "command/process/interruption.hpp"
 #include "command/process/terminal.hpp"
 #include "commands.hpp"
-#include "stability/limits_files.hpp"
 #include "stability/limits_run.hpp"
 
 namespace rouleau::command {

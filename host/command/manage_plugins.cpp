@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <iostream>
-#include <string>
 
 #include "base/process.hpp"
 #include "base/text.hpp"
@@ -27,9 +26,8 @@ namespace fs = std::filesystem;
 /// The plugins of a folder that is searched for nothing else.
 std::vector<plugin::Manifest> plugins_in(const fs::path& folder) {
   const plugin::Catalog offered(plugin::named_folders({folder}));
-  for (const auto& refused : offered.refused()) {
+  for (const auto& refused : offered.refused())
     throw Error(Cause::plugin_refused, Place{refused.file.string()}, refused.reason);
-  }
   if (offered.manifests().empty()) {
     throw Error(Cause::bad_input, Place{folder.string()},
                 "holds no manifest of a plugin; name the folder with the built library and its manifest");
@@ -61,9 +59,8 @@ class Prepared {
     const fs::path library = partial_ / manifest.library.filename();
     files::write_file(library, files::read_text(plugin::checked_library(manifest)));
     files::write_file(partial_ / manifest.file.filename(), files::read_text(manifest.file));
-    for (const fs::path& path : {partial_, library, partial_ / manifest.file.filename()}) {
+    for (const fs::path& path : {partial_, library, partial_ / manifest.file.filename()})
       fs::permissions(path, fs::perms::others_write, fs::perm_options::remove, error);
-    }
     files::synchronise(partial_);
   }
   Prepared(const Prepared&) = delete;
@@ -110,9 +107,8 @@ std::vector<const plugin::Manifest*> named_plugins(const scene::Scene& scene, co
     if (std::find(named.begin(), named.end(), &manifest) == named.end()) named.push_back(&manifest);
   };
   add(plugin::ModelKind::collision, scene.fluid.collision);
-  for (const scene::CellType& type : scene.cell_types) {
+  for (const scene::CellType& type : scene.cell_types)
     for (const scene::ModelChoice& law : type.membrane) add(plugin::ModelKind::membrane, law);
-  }
   for (const scene::Interaction& interaction : scene.interactions)
     add(plugin::ModelKind::interaction, interaction.potential);
   return named;
@@ -128,9 +124,8 @@ void install_plugins(const fs::path& folder, const plugin::Catalog& catalog, boo
                 "absolute folder");
   }
   const std::vector<plugin::Manifest> manifests = plugins_in(folder);
-  for (const plugin::Manifest& manifest : manifests) {
+  for (const plugin::Manifest& manifest : manifests)
     require_free(manifest, user_folder / manifest.id, catalog, overwrite);
-  }
   require_conformance(manifests);
   std::vector<std::unique_ptr<Prepared>> prepared;
   prepared.reserve(manifests.size());
@@ -138,9 +133,8 @@ void install_plugins(const fs::path& folder, const plugin::Catalog& catalog, boo
     std::error_code error;
     fs::create_directories(user_folder, error);
     if (error) fail_file(user_folder, "cannot be made", error.value());
-    for (const plugin::Manifest& manifest : manifests) {
+    for (const plugin::Manifest& manifest : manifests)
       prepared.push_back(std::make_unique<Prepared>(manifest, user_folder));
-    }
   } catch (const Error& fault) {
     if (fault.cause() != Cause::input_output) throw;
     throw Error(fault.cause(), fault.place(), fault.problem(),

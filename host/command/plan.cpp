@@ -172,11 +172,10 @@ int plan_command(const std::vector<std::string>& arguments) {
   }
   std::cout << std::flush;
   // What a run here would be refused for is; of several ranks nobody knows here what memory their machines have.
-  if (ranks) {
+  if (ranks)
     plan::require_computable(planned.read.scene, &ranks->blocks());
-  } else {
+  else
     require_startable(planned, nullptr, 1);
-  }
   return 0;
 }
 

@@ -51,11 +51,10 @@ Json written(double si, const plugin::Parameter& parameter, const units::Units& 
 
 Json describe(const plugin::Parameter& parameter, const units::Units& units) {
   Json entry = {{"name", parameter.name}, {"doc", parameter.doc}};
-  if (parameter.choices.empty()) {
+  if (parameter.choices.empty())
     entry["unit"] = parameter.unit;
-  } else {
+  else
     entry["choices"] = parameter.choices;
-  }
   const auto add = [&](const char* key, const std::optional<double>& value) {
     if (value) entry[key] = written(*value, parameter, units);
   };
@@ -122,11 +121,10 @@ std::string limits_text(const Json& parameter) {
 void print(const plugin::Parameter& parameter, const units::Units& units) {
   const Json entry = describe(parameter, units);
   std::cout << "    " << parameter.name;
-  if (!parameter.choices.empty()) {
+  if (!parameter.choices.empty())
     std::cout << ", one of " << listed(parameter.choices);
-  } else {
+  else
     std::cout << (parameter.unit == "1" ? ", a number" : " in " + printable(parameter.unit));
-  }
   std::cout << (entry.contains("default") ? ", default " + value_text(entry["default"]) : ", must be given");
   if (parameter.role) std::cout << ", role " << plugin::facts_of(*parameter.role).name;
   std::cout << '\n';
@@ -169,9 +167,8 @@ Json list(const plugin::Catalog& catalog, const std::vector<std::filesystem::pat
     plugins.push_back(describe(manifest, units));
     plugins.back()["origin"] = plugin::origin_of(manifest.file, named);
   }
-  for (const auto& entry : catalog.refused()) {
+  for (const auto& entry : catalog.refused())
     refused.push_back({{"manifest", entry.file.string()}, {"id", entry.id}, {"reason", entry.reason}});
-  }
   for (const auto& folder : catalog.folders()) folders.push_back(folder.string());
   return {{"plugins", plugins}, {"refused", refused}, {"folders", folders}};
 }
@@ -193,15 +190,13 @@ void print(const plugin::Catalog& catalog, const std::vector<std::filesystem::pa
   for (const auto& entry : catalog.refused()) {
     std::cout << "  " << entry.file.string() << (entry.id.empty() ? "" : " (" + printable(entry.id) + ')') << '\n';
     std::string reason = "    " + entry.reason;
-    for (auto end = reason.find('\n'); end != std::string::npos; end = reason.find('\n', end + 1)) {
+    for (auto end = reason.find('\n'); end != std::string::npos; end = reason.find('\n', end + 1))
       reason.insert(end + 1, "    ");
-    }
     std::cout << reason << '\n';
   }
   std::cout << "folders searched" << (catalog.folders().empty() ? ": none\n" : "\n");
-  for (const auto& folder : catalog.folders()) {
+  for (const auto& folder : catalog.folders())
     std::cout << "  " << folder.string() << " (" << plugin::origin_of(folder, named) << ")\n";
-  }
 }
 
 /// The manifest with an id, of any kind.
@@ -212,9 +207,8 @@ const plugin::Manifest& find(const plugin::Catalog& catalog, const std::string& 
     ids.push_back(manifest.id);
   }
   const auto& refused = catalog.refused();
-  if (std::any_of(refused.begin(), refused.end(), [&](const auto& entry) { return entry.id == id; })) {
+  if (std::any_of(refused.begin(), refused.end(), [&](const auto& entry) { return entry.id == id; }))
     return catalog.find(plugin::ModelKind::collision, id, {"rouleau plugins", {}, 0, 0});
-  }
   throw Error(Cause::bad_input, "rouleau plugins: no plugin has the id " + in_quotes(id) + did_you_mean(id, ids) +
                                     "\n  there are: " + listed(ids));
 }
@@ -246,9 +240,8 @@ void list_cells(const std::string& wanted, bool as_json) {
 /// What the command is asked for, of which there can be one at a time.
 void require_one(const std::vector<std::pair<std::string, bool>>& asked) {
   std::vector<std::string> given;
-  for (const auto& [name, is_given] : asked) {
+  for (const auto& [name, is_given] : asked)
     if (is_given) given.push_back(name);
-  }
   if (given.size() > 1) throw Error(Cause::bad_input, "rouleau plugins: give one of these alone: " + listed(given));
 }
 
@@ -287,9 +280,8 @@ int plugins_command(const std::vector<std::string>& arguments) {
   if (overwrite && install.empty())
     throw Error(Cause::bad_input, "rouleau plugins: --overwrite goes with --install DIR");
   if (!scene.empty()) {
-    if (as_json) {
+    if (as_json)
       throw Error(Cause::bad_input, "rouleau plugins --lock SCENE goes with --plugin-dir and --out, not with --json");
-    }
     lock_scene(scene, named, out);
     return exit_code::done;
   }
@@ -310,11 +302,10 @@ int plugins_command(const std::vector<std::string>& arguments) {
     return exit_code::done;
   }
   const plugin::Manifest& manifest = find(catalog, id);
-  if (as_json) {
+  if (as_json)
     std::cout << describe(manifest, units).dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
-  } else {
+  else
     print(manifest, units);
-  }
   return exit_code::done;
 }
 

@@ -1,7 +1,6 @@
 // A run by all ranks that a launcher has started together: the first one leads, the others follow.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 

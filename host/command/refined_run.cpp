@@ -1,9 +1,7 @@
 #include "refined_run.hpp"
 
-#include <algorithm>
 #include <iostream>
 
-#include "accuracy/measure_errors.hpp"
 #include "base/text.hpp"
 #include "command/process/program.hpp"
 #include "files/checkpoint_file.hpp"

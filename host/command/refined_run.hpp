@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "accuracy/measure_errors.hpp"
 #include "command/process/interruption.hpp"

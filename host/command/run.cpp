@@ -1,5 +1,4 @@
 // rouleau run SCENE: simulate and write a run directory.
-#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <iostream>
@@ -13,7 +12,6 @@
 #include "command/process/terminal.hpp"
 #include "commands.hpp"
 #include "plan/estimate.hpp"
-#include "plan/ranks/blocks.hpp"
 #include "ranked_run.hpp"
 #include "refined_run.hpp"
 #include "report/report.hpp"
@@ -127,12 +125,9 @@ bool read_request(const std::vector<std::string>& arguments, Request& request) {
   if (!parse_command_line("run", run_help, arguments, description, positional)) return false;
   std::signal(SIGPIPE, SIG_IGN);  // when who reads the progress has gone the run goes on
 
-  if (resume && overwrite) {
+  if (resume && overwrite)
     throw Error(Cause::bad_input, "--resume and --overwrite: a run either goes on or is replaced; give one of them");
-  }
-  if (bars.asked_for && bars.refused) {
-    throw Error(Cause::bad_input, "--error-bar and --no-error-bar: give one of them");
-  }
+  if (bars.asked_for && bars.refused) throw Error(Cause::bad_input, "--error-bar and --no-error-bar: give one of them");
   if (run.force && !resume) throw Error(Cause::bad_input, "--force: only together with --resume");
   check_threads("--threads", run.threads);
   return true;
@@ -199,9 +194,8 @@ int lead(const Request& request, const PlannedScene& planned, const TimeLimit& l
     std::cerr << opening(planned.plan, report, crew != nullptr ? crew->ranks() : 1, run.threads, processors(), folder);
   {
     files::RunDirectory directory(folder, scene, former);
-    if (resume && !directory.resumes()) {
+    if (resume && !directory.resumes())
       std::cerr << folder.string() << " holds no checkpoint: the run begins at the beginning\n";
-    }
     summary = simulate_on_all_ranks(scene_options, planned, run, directory, again);
   }
   const bool whole = summary.status == "completed" && summary.stages.back().ended_by != run::Ending::max_steps;
@@ -248,11 +242,10 @@ int run_command(const std::vector<std::string>& arguments) {
     prepare(request, *limit, planned);
   };
   Crew* const crew = Crew::present();
-  if (crew != nullptr) {
+  if (crew != nullptr)
     crew->in_turn(begin);
-  } else {
+  else
     begin();
-  }
   if (!planned) return exit_code::done;  // help was asked for
   require_same_run(arguments, *planned);
   require_threads("--threads", request.run.threads);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <optional>
 #include <utility>
 
 #include "accuracy/error_bars.hpp"

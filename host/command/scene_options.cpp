@@ -7,10 +7,8 @@
 #include "base/text.hpp"
 #include "command/process/command_line.hpp"
 #include "command/process/crew.hpp"
-#include "core/membrane/membranes.hpp"
 #include "manage_plugins.hpp"
 #include "plan/placed_cells.hpp"
-#include "plan/ranks/blocks.hpp"
 
 namespace rouleau::command {
 
@@ -71,9 +69,8 @@ plugin::Catalog SceneOptions::catalog(const scene::Scene& read) const {
   const std::filesystem::path file = lock.empty() ? plugin::lock_beside(scene) : std::filesystem::path(lock);
   // A link that leads nowhere is a lock that cannot be read, not a scene without one.
   std::error_code ignored;
-  if (!lock.empty() || std::filesystem::exists(std::filesystem::symlink_status(file, ignored))) {
+  if (!lock.empty() || std::filesystem::exists(std::filesystem::symlink_status(file, ignored)))
     catalog.set_lock(plugin::read_lock(file, lock_renewal(file, scene)));
-  }
   return catalog;
 }
 

@@ -3,13 +3,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <array>
-#include <cerrno>
 #include <optional>
 #include <sstream>
 #include <string_view>
 #include <system_error>
-#include <type_traits>
 
 #include "base/error.hpp"
 #include "base/input_file.hpp"

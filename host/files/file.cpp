@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/input_file.hpp"
 #include "base/text.hpp"
 
 namespace rouleau::files {

@@ -57,11 +57,10 @@ void FrameWriter::write(const observe::Snapshot& snapshot) {
   open_->attribute(frame, "stage_name", snapshot.stage_name);
   FrameRecord record;
   record.time = snapshot.time;
-  if (!snapshot.membranes.cell.empty()) {
+  if (!snapshot.membranes.cell.empty())
     write_membranes(frame, snapshot, record);
-  } else {
+  else
     observe::give_all(snapshot.membranes.fields);
-  }
   if (!snapshot.fields.empty()) write_fields(frame, snapshot.fields, record);
   record.sheared_walls = write_on_walls(*open_, frame + "/walls", snapshot.fields.on_walls);
   open_->flush();
@@ -161,9 +160,8 @@ void FrameWriter::write_topology(const observe::MembraneSnapshot& membranes) {
   if (topology_record_.surfaces) {
     NumberRows rows(*open_, topology_ + "/triangles", {topology_record_.connectivity / 3, 3});
     for (std::size_t cell = 0; cell < cells; ++cell) {
-      for (const auto& corners : membranes.triangles(cell_of[cell])) {
+      for (const auto& corners : membranes.triangles(cell_of[cell]))
         for (const int corner : corners) rows.next().push_back(first[cell] + corner);
-      }
       rows.write();
     }
     rows.write(true);

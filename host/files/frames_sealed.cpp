@@ -77,11 +77,10 @@ const FramesSaved& FrameWriter::seal() {
 
 void FrameWriter::close() {
   seal();
-  if (saved_.segments.size() == 1) {
+  if (saved_.segments.size() == 1)
     move_into_place(segment(1), file_);
-  } else {
+  else
     link_segments();
-  }
 }
 
 std::vector<std::string> FrameWriter::names() const {

@@ -3,7 +3,6 @@
 
 #include <string>
 #include <vector>
-
 #include "walls.hpp"
 
 namespace rouleau::files {

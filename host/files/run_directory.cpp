@@ -4,22 +4,23 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <string_view>
+#include <string>
 #include <system_error>
 
+#include "base/curve.hpp"
 #include "checkpoint_file.hpp"
-#include "file.hpp"
 #include "frames.hpp"
 #include "json/document.hpp"
 #include "observe/cell_traffic.hpp"
-#include "profiles.hpp"
-#include "tables.hpp"
+#include "observe/profiles.hpp"
+#include "observe/statistics.hpp"
 #include "verify.hpp"
 
 namespace rouleau::files {
 
 namespace {
 
+constexpr const char* profiles_file = "profiles.csv";
 constexpr std::array<std::string_view, 13> run_files{profiles_file,
                                                      "aggregate_sizes.csv",
                                                      "cells.csv",
@@ -82,13 +83,42 @@ void remove_files(const std::filesystem::path& directory, Choice chosen) {
   for (const auto& entry : std::filesystem::directory_iterator(directory)) {
     if (!chosen(entry.path().filename().string())) continue;
     std::error_code error;
-    if (const auto name = entry.path().filename(); name == companions_folder || name == refined_folder) {
+    if (const auto name = entry.path().filename(); name == companions_folder || name == refined_folder)
       std::filesystem::remove_all(entry.path(), error);
-    } else {
+    else
       std::filesystem::remove(entry.path(), error);
-    }
     if (error) fail_file(entry.path(), "of a former run cannot be removed", error.value());
   }
+}
+
+/// A row for each stage and bin: the means of observe::statistics; where it finds none, those over the second half of
+/// the stage with errors that are no numbers.
+std::string profiles_csv(const observe::ProfileHistory& history, const scene::Scene& scene) {
+  using Instant = observe::ProfileHistory::Instant;
+  std::string text = "stage,position_m";
+  for (const std::string name : {"velocity", "hematocrit"}) {
+    const std::string unit = name == "velocity" ? "_m_per_s" : "";
+    text += "," + name + unit + "," + name + "_standard_error" + unit + "," + name + "_from_s," + name + "_verdict";
+  }
+  text += "\n";
+  for (const auto& [stage, instants] : history.stages()) {
+    Column time;
+    for (const Instant& instant : instants) time.push_back(instant.time);
+    for (int bin = 0; bin < scene.output.profiles->bins; ++bin) {
+      text += csv_text(stage) + "," + to_text(observe::place_of_bin(scene, bin));
+      for (const auto profile : {&Instant::velocity, &Instant::hematocrit}) {
+        Column values;
+        for (const Instant& instant : instants) values.push_back((instant.*profile)[static_cast<std::size_t>(bin)]);
+        const observe::Statistics known = observe::statistics(time, values);
+        const double late = time.size() > 1 ? mean_from(time, values, (time.front() + time.back()) / 2) : values.back();
+        for (const double value : {known.steady() ? known.mean : late, known.standard_error, known.from})
+          (text += ",") += to_text(value);
+        (text += ",") += csv_text(known.verdict);
+      }
+      text += "\n";
+    }
+  }
+  return text;
 }
 
 }  // namespace
@@ -124,9 +154,8 @@ std::filesystem::path unused_directory(const std::filesystem::path& wanted) {
     const bool taken = std::filesystem::exists(std::filesystem::symlink_status(directory));
     if (!taken) fail_file(directory, "cannot be made", error ? error.value() : EIO);
     std::error_code ignored;
-    if (std::filesystem::is_directory(directory, ignored) && std::filesystem::is_empty(directory, ignored)) {
+    if (std::filesystem::is_directory(directory, ignored) && std::filesystem::is_empty(directory, ignored))
       return directory;
-    }
   }
 }
 

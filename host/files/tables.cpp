@@ -8,7 +8,6 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "file.hpp"
 #include "observe/observables.hpp"
 
 namespace rouleau::files {

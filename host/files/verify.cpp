@@ -40,9 +40,8 @@ std::string difference(const fs::path& file, const Json& record) {
   const std::uintmax_t bytes = fs::file_size(file, error);
   if (error) return name + " is not there";
   const auto expected = record.at("bytes").get<std::uintmax_t>();
-  if (bytes != expected) {
+  if (bytes != expected)
     return name + " has " + std::to_string(bytes) + " bytes instead of " + std::to_string(expected);
-  }
   const std::string found = checksum_text(checksum_of(file).value()), written = record.at("xxh3");
   return found == written ? "" : name + " was changed: its checksum is " + found + " instead of " + written;
 }
@@ -89,12 +88,10 @@ Verification verify(const fs::path& directory, const std::function<bool(const st
     result.differences.emplace_back("summary.json is damaged: it is no JSON any more");
     return result;
   }
-  if (written.empty() || !summary.contains("files")) {
+  if (written.empty() || !summary.contains("files"))
     refuse("has no checksums: it was written by a version before 0.2, or they were taken out");
-  }
-  if (found != written) {
+  if (found != written)
     result.differences.push_back("summary.json was changed: its checksum is " + found + " instead of " + written);
-  }
   for (const auto& [name, record] : summary.at("files").items()) {
     if (wanted && !wanted(name)) continue;
     ++result.files;

@@ -1,12 +1,10 @@
 #include "document.hpp"
 
-#include <string_view>
 #include <utility>
 
 #include "base/input_file.hpp"
 #include "base/text.hpp"
 #include "json_pointer.hpp"
-#include "parser.hpp"
 #include "shown.hpp"
 
 namespace rouleau::json {
@@ -22,13 +20,11 @@ class Assignment {
       refuse("it is no UTF-8; write it in a terminal that is set to UTF-8");
     }
     const auto equals = assignment.find('=');
-    if (equals == std::string::npos) {
+    if (equals == std::string::npos)
       refuse("POINTER=VALUE is wanted, for example --set /numerics/tau=0.8; there is no '=' here");
-    }
     pointer_ = assignment.substr(0, equals);
-    if (!pointer_.empty() && !pointer_.starts_with('/')) {
+    if (!pointer_.empty() && !pointer_.starts_with('/'))
       refuse("a JSON pointer begins with '/'; write --set /" + printable(assignment));
-    }
     text_ = assignment.substr(equals + 1);
   }
 
@@ -113,9 +109,8 @@ void Document::put(const std::string& pointer, const nlohmann::json& value, cons
 }
 
 const Document::Override* Document::override_at(const std::string& pointer) const {
-  for (const Override& override : overrides_) {
+  for (const Override& override : overrides_)
     if (pointer == override.pointer || pointer.starts_with(override.pointer + '/')) return &override;
-  }
   return nullptr;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/text.hpp"
-#include "json.hpp"
 #include "json_pointer.hpp"
 
 namespace rouleau::json {
@@ -179,13 +178,11 @@ ParsedText parse_json(std::string_view text) {
     throw TextFault(
         0, "the file has more than " + std::to_string(largest_text >> 20U) + " MiB, which no file of this kind needs");
   }
-  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
     throw TextFault(0, "the file is empty; it must hold one JSON object, written between { and }");
-  }
   // nlohmann-json takes a NUL byte for the end of the text and would not look at what follows.
-  if (const auto nul = text.find('\0'); nul != std::string_view::npos) {
+  if (const auto nul = text.find('\0'); nul != std::string_view::npos)
     throw TextFault(nul, "a NUL byte stands here: this is no text file");
-  }
   ParsedText result;
   Reader reader(text, result);
   nlohmann::json::sax_parse(text.begin(), text.end(), &reader);
@@ -218,20 +215,17 @@ std::optional<TextTree::Index> TextTree::child(std::string_view text, Index node
   const auto index = array_index(token);
   if (array && !index) return std::nullopt;
   std::size_t count = 0;
-  for (Index at = node + 1; at < nodes_[node].next; at = nodes_[at].next, ++count) {
+  for (Index at = node + 1; at < nodes_[node].next; at = nodes_[at].next, ++count)
     if (array ? count == *index : key(text, nodes_[at].key) == token) return at;
-  }
   return std::nullopt;
 }
 
 std::size_t end_of_string(std::string_view text, std::size_t start) {
-  for (std::size_t i = start + 1; i < text.size(); ++i) {
-    if (text[i] == '\\') {
+  for (std::size_t i = start + 1; i < text.size(); ++i)
+    if (text[i] == '\\')
       ++i;
-    } else if (text[i] == '"') {
+    else if (text[i] == '"')
       return i + 1;
-    }
-  }
   return text.size();
 }
 

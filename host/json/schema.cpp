@@ -107,9 +107,8 @@ class Explainer {
       return fault(
           at, "found " + shown(at.value) + "; " + name + " must be " + shown(rule["const"]) + description(at, rule));
     }
-    if (rule.contains("enum") && std::find(rule["enum"].begin(), rule["enum"].end(), at.value) == rule["enum"].end()) {
+    if (rule.contains("enum") && std::find(rule["enum"].begin(), rule["enum"].end(), at.value) == rule["enum"].end())
       return fault(at, not_among(at.value, name, rule["enum"]) + description(at, rule));
-    }
     if (fits_type(at.value, rule)) return {};
     std::string remedy;
     if (at.value.is_string() && Json::accept(at.value.get_ref<const std::string&>())) {
@@ -117,9 +116,8 @@ class Explainer {
       if (!bare.is_string() && fits_type(bare, rule)) remedy = "; write " + shown(bare) + " without quotes";
     }
     if (at.value.is_number_float() && at.value.get<double>() == std::floor(at.value.get<double>()) &&
-        std::abs(at.value.get<double>()) < 1e15 && fits_type(Json(1), rule)) {
+        std::abs(at.value.get<double>()) < 1e15 && fits_type(Json(1), rule))
       remedy = "; write " + number(at.value.get<double>(), 15);
-    }
     return fault(at, "found " + kind_and_value(at.value) + "; " + name + " wants " + wanted_kind(schema_, rule) +
                          remedy + description(at, rule));
   }
@@ -154,9 +152,8 @@ class Explainer {
       return fault(at, in_quotes(text) + " is too long for " + name + ": at most " + std::to_string(longest_matched) +
                            " bytes" + description(at, rule));
     }
-    if (rule.contains("pattern") && !std::regex_search(text, compiled(rule["pattern"].get<std::string>()))) {
+    if (rule.contains("pattern") && !std::regex_search(text, compiled(rule["pattern"].get<std::string>())))
       return fault(at, in_quotes(text) + " cannot be used for " + name + description(at, rule));
-    }
     return {};
   }
 
@@ -202,9 +199,8 @@ class Explainer {
         list.emplace_back(std::move(key), in_text ? std::optional(node) : std::nullopt);
       }
     }
-    for (const auto& [key, value] : at.value.items()) {
+    for (const auto& [key, value] : at.value.items())
       if (!listed.contains(key)) list.emplace_back(key, std::nullopt);
-    }
     return list;
   }
 

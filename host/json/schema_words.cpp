@@ -77,9 +77,8 @@ bool has(const Json& rule, const char* part, const std::string& key) {
 int likeness(const Json& rule, const Json& value) {
   if (!value.is_object() || !rule.contains("properties")) return 0;
   int score = 0;
-  for (const auto& [key, member] : value.items()) {
+  for (const auto& [key, member] : value.items())
     if (has(rule, "properties", key)) score += has(rule, "required", key) ? 4 : 2;
-  }
   return score;
 }
 
@@ -101,9 +100,8 @@ void add_once(std::vector<std::string>& list, const std::string& word) {
 
 const Json& resolve(const Json& schema, const Json& rule) {
   const Json* at = &rule;
-  for (int steps = 0; steps < 16 && at->is_object() && at->contains("$ref"); ++steps) {
+  for (int steps = 0; steps < 16 && at->is_object() && at->contains("$ref"); ++steps)
     at = &schema.at(Json::json_pointer((*at)["$ref"].get<std::string>().substr(1)));
-  }
   return *at;
 }
 
@@ -188,9 +186,8 @@ Choice::Choice(const Json& schema, const Json& branches, const Json& value) {
     const auto words_of_branch = rule.contains("enum")    ? rule["enum"]
                                  : rule.contains("const") ? Json::array({rule["const"]})
                                                           : Json::array();
-    for (const auto& word : words_of_branch) {
+    for (const auto& word : words_of_branch)
       if (word.is_string()) words.push_back(word.get<std::string>());
-    }
     wanted += (wanted.empty() ? "" : ", or ") + wanted_kind(schema, rule);
     const bool of_type = words_of_branch.empty()
                              ? fits_type(value, rule)
@@ -214,9 +211,8 @@ Choice::Choice(const Json& schema, const Json& branches, const Json& value) {
       if (scores[i] != best) add_once(other_keys, key);
     }
     for (const auto* other : possible) {
-      for (const auto& key : possible[i]->value("required", std::vector<std::string>{})) {
+      for (const auto& key : possible[i]->value("required", std::vector<std::string>{}))
         if (other != possible[i] && !has(*other, "properties", key)) add_once(deciding_keys, key);
-      }
     }
   }
 }

@@ -1,7 +1,6 @@
 // What a JSON Schema asks for, in words, and which branch of a oneOf a user meant, judged by the keys of the value.
 #pragma once
 
-#include <cmath>
 #include <map>
 #include <string>
 #include <vector>

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/text.hpp"
 #include "json.hpp"
 
 namespace rouleau::json {
@@ -14,6 +15,9 @@ inline nlohmann::json number_or_null(double value) {
 }
 
 /// A JSON value as one would write it, shortened when long.
-std::string shown(const nlohmann::json& value);
+inline std::string shown(const nlohmann::json& value) {
+  if (value.is_string()) return in_quotes(value.get_ref<const std::string&>());
+  return shortened(printable(value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)));
+}
 
 }  // namespace rouleau::json

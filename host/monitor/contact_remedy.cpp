@@ -139,10 +139,9 @@ std::string wall_crossing_remedy(const plan::Plan& plan, const scene::StageSetti
   const scene::Scene& scene = *plan.scene;
   const int type = scene.cells[cell].type;
   const std::string reach = some_reach(stage);
-  for (std::size_t i = 0; i < plan.interactions.size(); ++i) {
+  for (std::size_t i = 0; i < plan.interactions.size(); ++i)
     if (scene.interactions[i].with_wall() && scene.interactions[i].between[0] == type && plan.interactions[i].active())
       return "give the repulsion from walls more strength, or " + reach + finer;
-  }
   return new_repulsion(scene.cell_types[type].name, "wall", some_strength(plan) + reach) + finer;
 }
 

@@ -1,8 +1,6 @@
 // Why a run stopped early, and what that looks like.
 #pragma once
 
-#include <array>
-#include <optional>
 #include <string>
 
 #include "scene/vector.hpp"

@@ -20,9 +20,8 @@ FoundNode found(const core::CellNodes& cells, int node, double step) {
   const auto k = static_cast<std::size_t>(node);
   found.place = {cells.position[0][k] - cells.velocity[0][k], cells.position[1][k] - cells.velocity[1][k],
                  cells.position[2].empty() ? 0 : cells.position[2][k] - cells.velocity[2][k]};
-  for (const int c : cells.known_cells()) {
+  for (const int c : cells.known_cells())
     if (node >= cells.cells[c].first && node < cells.cells[c].end()) found.cell = c;
-  }
   return found;
 }
 

@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <variant>
 
 #include "base/text.hpp"
 #include "contact_remedy.hpp"
 #include "core/contact/crossing.hpp"
-#include "core/contact/surface_crossing.hpp"
 #include "core/membrane/geometry.hpp"
 #include "node_checks.hpp"
 #include "plan/constants.hpp"
 #include "plan/limits.hpp"
-#include "plan/solver_setup.hpp"
 #include "scene/driving_flow.hpp"
 #include "shape/extent.hpp"
 
@@ -23,15 +20,13 @@ namespace {
 
 Failure failure(std::string reason, const scene::Vector& place, int cell, double value, double limit,
                 std::string message, std::string remedy) {
-  Failure f;
-  f.reason = std::move(reason);
-  f.place = place;
-  f.cell = cell;
-  f.value = value;
-  f.limit = limit;
-  f.message = std::move(message);
-  f.remedy = std::move(remedy);
-  return f;
+  return {.reason = std::move(reason),
+          .place = place,
+          .cell = cell,
+          .value = value,
+          .limit = limit,
+          .message = std::move(message),
+          .remedy = std::move(remedy)};
 }
 
 /// What else helps a membrane that is too stiff for the time step, if it is not so yet.

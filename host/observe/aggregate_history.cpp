@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 
-#include "aggregates.hpp"
 #include "json/shown.hpp"
 
 namespace rouleau::observe {
@@ -13,24 +12,16 @@ namespace {
 
 constexpr std::size_t most_cells_with_images = 200;  ///< of more, pairs that have met would fill checkpoints
 
-std::vector<int> numbers_of(const Snapshot& snapshot) {
-  std::vector<int> cells;
-  for (const CellSnapshot& cell : snapshot.cells) cells.push_back(cell.cell);
-  return cells;
-}
-
-/// Cells that hang together by these contacts, each group and all groups by their smallest cell.
-std::vector<std::vector<int>> groups_by(const std::vector<ContactSnapshot>& contacts, std::vector<int> cells) {
-  std::vector<CellContact> pairs;
-  pairs.reserve(contacts.size());
-  for (const ContactSnapshot& contact : contacts) pairs.push_back({contact.cell_a, contact.cell_b, {}, 0, 0});
-  const Aggregates found = find_aggregates(std::move(cells), pairs);
-  std::map<int, std::vector<int>> groups;
-  for (std::size_t i = 0; i < found.cells.size(); ++i) groups[found.label[i]].push_back(found.cells[i]);
-  std::vector<std::vector<int>> result;
-  result.reserve(groups.size());
-  for (auto& [first, members] : groups) result.push_back(std::move(members));
-  return result;
+/// The cells of each label, ascending, in the order of their first ones.
+std::vector<std::vector<int>> groups_by(int CellSnapshot::*label, const std::vector<CellSnapshot>& cells) {
+  std::vector<std::vector<int>> groups;
+  std::map<int, std::size_t> place;
+  for (const CellSnapshot& cell : cells) {
+    const auto [found, is_new] = place.try_emplace(cell.*label, groups.size());
+    if (is_new) groups.emplace_back();
+    groups[found->second].push_back(cell.cell);
+  }
+  return groups;
 }
 
 /// Those of two cells or more.
@@ -59,7 +50,8 @@ std::vector<std::array<int, 2>> AggregateHistory::follow_images(const std::vecto
 }
 
 void AggregateHistory::follow_lives(const Snapshot& snapshot, std::vector<std::vector<int>> groups) {
-  const std::vector<int> cells = numbers_of(snapshot);
+  std::vector<int> cells;
+  for (const CellSnapshot& cell : snapshot.cells) cells.push_back(cell.cell);
   const auto holds = [](const std::vector<int>& all, const std::vector<int>& some) {
     return std::includes(all.begin(), all.end(), some.begin(), some.end());
   };
@@ -105,16 +97,12 @@ nlohmann::json AggregateHistory::lifetimes() const {
 void AggregateHistory::follow(const Snapshot& snapshot) {
   count_ = snapshot.aggregate_count;
   if (snapshot.cells.empty()) return;
-  AggregateEvent event{snapshot.strain, snapshot.time, snapshot.aggregate_count, {}, false};
-  std::map<int, std::size_t> slot;
-  for (const CellSnapshot& cell : snapshot.cells) {
-    const auto [s, made] = slot.try_emplace(cell.aggregate, event.members.size());
-    if (made) event.members.emplace_back();
-    event.members[s->second].push_back(cell.cell);
-    event.through_image = event.through_image || cell.through_image;
-  }
+  const bool through_image = std::any_of(snapshot.cells.begin(), snapshot.cells.end(),
+                                         [](const CellSnapshot& cell) { return cell.through_image; });
+  AggregateEvent event{snapshot.strain, snapshot.time, snapshot.aggregate_count,
+                       groups_by(&CellSnapshot::aggregate, snapshot.cells), through_image};
   if (snapshot.attracts) {
-    event.joined = groups_by(snapshot.bonds, numbers_of(snapshot));
+    event.joined = groups_by(&CellSnapshot::bonded, snapshot.cells);
     if (snapshot.cells.size() <= most_cells_remembered) follow_lives(snapshot, several(event.joined));
     if (event.joined == event.members) event.joined.clear();
     if (snapshot.cells.size() <= most_cells_with_images) event.met_images = follow_images(snapshot.bonds);

@@ -33,6 +33,13 @@ void for_each_near(const core::Membranes& m, const std::vector<core::BoundingBox
   }
 }
 
+/// Which gaps of own cells have not been found.
+std::vector<char> open_ones(const core::CellNodes& cells, const std::vector<double>& gaps) {
+  std::vector<char> open(gaps.size(), 0);
+  for (const int c : cells.own_cells()) open[c] = std::isinf(gaps[c]) ? 1 : 0;
+  return open;
+}
+
 }  // namespace
 
 std::vector<CellContact> find_touching_cells(const core::Membranes& m, const core::Domain<2>& domain, double reach) {
@@ -79,17 +86,6 @@ std::vector<CellContact> find_touching_cells(const core::Surfaces& s, const core
   }
   return contacts;
 }
-
-namespace {
-
-/// Which gaps of own cells have not been found.
-std::vector<char> open_ones(const core::CellNodes& cells, const std::vector<double>& gaps) {
-  std::vector<char> open(gaps.size(), 0);
-  for (const int c : cells.own_cells()) open[c] = std::isinf(gaps[c]) ? 1 : 0;
-  return open;
-}
-
-}  // namespace
 
 std::vector<double> smallest_gaps(core::Surroundings<3>& around, const core::Domain<3>& domain) {
   const core::Surfaces& s = around.cells();

@@ -6,7 +6,6 @@
 #include <map>
 #include <tuple>
 
-#include "aggregates.hpp"
 #include "rheology.hpp"
 
 namespace rouleau::observe {

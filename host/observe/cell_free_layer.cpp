@@ -4,9 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
-#include "core/geometry/border_of_region.hpp"
+#include "core/geometry/border.hpp"
 #include "core/geometry/facet_tree.hpp"
 #include "core/geometry/formulas.hpp"
 
@@ -92,6 +91,22 @@ void for_lines_across(const core::Surfaces& surfaces, int longest, Meet meet) {
         if (found == 2) meet(x, ends[0], ends[1]);
       });
     }
+  }
+}
+
+/// Calls visit(place) for the images of a place beside the domain, and for itself.
+template <int D, class Visit>
+void for_images(const core::Vec<D>& place, const core::Domain<D>& domain, Visit visit) {
+  std::array<int, D> image;
+  for (int k = 0; k < D; ++k) image[k] = domain.periodic[k] ? -1 : 0;
+  for (;;) {
+    core::Vec<D> moved = place;
+    for (int k = 0; k < D; ++k) moved[k] += image[k] * domain.period(k);
+    visit(moved);
+    int k = 0;
+    while (k < D && image[k] == (domain.periodic[k] ? 1 : 0)) image[k] = domain.periodic[k] ? -1 : 0, ++k;
+    if (k == D) return;
+    ++image[k];
   }
 }
 
@@ -187,26 +202,6 @@ std::vector<WallPoint<D>> wall_points(const core::RegionPointer<D>& region, cons
 }
 template std::vector<WallPoint<2>> wall_points(const core::RegionPointer<2>&, const core::Domain<2>&);
 template std::vector<WallPoint<3>> wall_points(const core::RegionPointer<3>&, const core::Domain<3>&);
-
-namespace {
-
-/// Calls visit(place) for the images of a place beside the domain, and for itself.
-template <int D, class Visit>
-void for_images(const core::Vec<D>& place, const core::Domain<D>& domain, Visit visit) {
-  std::array<int, D> image;
-  for (int k = 0; k < D; ++k) image[k] = domain.periodic[k] ? -1 : 0;
-  for (;;) {
-    core::Vec<D> moved = place;
-    for (int k = 0; k < D; ++k) moved[k] += image[k] * domain.period(k);
-    visit(moved);
-    int k = 0;
-    while (k < D && image[k] == (domain.periodic[k] ? 1 : 0)) image[k] = domain.periodic[k] ? -1 : 0, ++k;
-    if (k == D) return;
-    ++image[k];
-  }
-}
-
-}  // namespace
 
 template <int D>
 CellFreeLayer cell_free_layer_at(const std::vector<WallPoint<D>>& walls, const core::CellNodes& cells,

@@ -1,7 +1,6 @@
 #include "cell_measures.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -73,10 +72,9 @@ double rear_hollow(const core::Mesh& mesh, const core::Nodes& nodes, const core:
   const double ahead = velocity < 0 ? -1 : 1;
   double rim = std::numeric_limits<double>::infinity(), middle = rim;
   for (int i = 0; i < mesh.node_count(); ++i) rim = std::min(rim, ahead * nodes.x[i]);
-  for (const auto& [a, b, c] : mesh.triangles()) {
+  for (const auto& [a, b, c] : mesh.triangles())
     if (const auto hit = core::LinesThroughTriangle(nodes[a], nodes[b], nodes[c]).crossing({center.y(), center.z()}))
       middle = std::min(middle, ahead * hit->x);
-  }
   return std::isfinite(middle) ? middle - rim : std::nan("");
 }
 

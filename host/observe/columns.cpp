@@ -70,9 +70,10 @@ constexpr Observable marked(Observable column) {
   return column;
 }
 
-constexpr Observable bonds_mean(Observable column) {
-  return marked<&Observable::has_means>(marked<&Observable::of_interactions>(column));
-}
+constexpr Observable mean(Observable column) { return marked<&Observable::has_means>(column); }
+constexpr Observable of_space(Observable column) { return marked<&Observable::in_space>(column); }
+constexpr Observable of_bonds(Observable column) { return marked<&Observable::of_interactions>(column); }
+constexpr Observable bonds_mean(Observable column) { return mean(of_bonds(column)); }
 
 constexpr Observable instant_columns[] = {
     {"step", "", "number of the step, over all stages", output<&Snapshot::step>},
@@ -101,8 +102,7 @@ constexpr Observable cell_columns[] = {
      cell<&CellSnapshot::wall_gap>, "Smallest gap to a wall"},
     {"aggregate", "", "label of the cell's aggregate: the smallest number of its cells",
      cell<&CellSnapshot::aggregate>},
-    marked<&Observable::of_interactions>(
-        {"bonded", "", "the same of the cells that bonds join: `output.bond_share`", cell<&CellSnapshot::bonded>}),
+    of_bonds({"bonded", "", "the same of the cells that bonds join: `output.bond_share`", cell<&CellSnapshot::bonded>}),
     {"tank_treading_angle", "rad",
      "of the outline's first node about the centroid, followed over turns; of a surface that of the node "
      "that was farthest from its axis along z at the start",
@@ -129,14 +129,12 @@ constexpr Observable aggregate_columns[] = {
     {"gap", "m", "smallest gap between the two", contact<&ContactSnapshot::gap>},
     {"contact_length", "m", "rest length of `cell_a`'s membrane that is nearer to `cell_b` than `aggregate_gap`",
      contact<&ContactSnapshot::contact_length>},
-    marked<&Observable::in_space>({"image_z", "", "along z", image<2>}),
-    marked<&Observable::in_space>({"contact_area", "m2",
-                                   "rest area of `cell_a`'s surface nearer to the other than the aggregate gap",
-                                   contact<&ContactSnapshot::contact_area>}),
-    marked<&Observable::of_interactions>(
-        {"bond_share", "",
-         "energy that the two have won, over what a face of the smaller would; `nan` where no well is known",
-         contact<&ContactSnapshot::bond_share>}),
+    of_space({"image_z", "", "along z", image<2>}),
+    of_space({"contact_area", "m2", "rest area of `cell_a`'s surface nearer to the other than the aggregate gap",
+              contact<&ContactSnapshot::contact_area>}),
+    of_bonds({"bond_share", "",
+              "energy that the two have won, over what a face of the smaller would; `nan` where no well is known",
+              contact<&ContactSnapshot::bond_share>}),
 };
 
 constexpr Observable series_columns[] = {
@@ -147,35 +145,30 @@ constexpr Observable series_columns[] = {
     {"rotation", "rad",
      "that of the largest aggregate in aggregates.csv (of equal ones the first); `nan` where it has none",
      [](const Row& row) -> Value { return largest_rotation(row.output); }},
-    marked<&Observable::has_means>(
-        {"relative_viscosity", "",
-         "in shear by the stress on the walls, in a driven flow by the flow rate; `nan` elsewhere",
-         output<&Snapshot::relative_viscosity>, "Relative viscosity"}),
+    mean({"relative_viscosity", "",
+          "in shear by the stress on the walls, in a driven flow by the flow rate; `nan` elsewhere",
+          output<&Snapshot::relative_viscosity>, "Relative viscosity"}),
     {"shear_rate", "1/s",
      "of the walls during the last step: speed of the upper less that of the lower, over the height; `nan` "
      "where they do not move",
      output<&Snapshot::shear_rate>},
-    marked<&Observable::has_means>(
-        {"wall_stress_lower", "Pa",
-         "mean shear stress on the lower wall along +x in the last step; `nan` without walls and before they act",
-         output<&Snapshot::wall_stress_lower>}),
-    marked<&Observable::has_means>(
-        {"wall_stress_upper", "Pa", "likewise, on the upper wall", output<&Snapshot::wall_stress_upper>}),
-    marked<&Observable::has_means>(
-        {"pressure_gradient", "Pa/m",
-         "force per volume along x that drives the fluid at this instant, beside `fluid.body_force`; `nan` "
-         "where the stage has none",
-         output<&Snapshot::pressure_gradient>}),
+    mean({"wall_stress_lower", "Pa",
+          "mean shear stress on the lower wall along +x in the last step; `nan` without walls and before they act",
+          output<&Snapshot::wall_stress_lower>}),
+    mean({"wall_stress_upper", "Pa", "likewise, on the upper wall", output<&Snapshot::wall_stress_upper>}),
+    mean({"pressure_gradient", "Pa/m",
+          "force per volume along x that drives the fluid at this instant, beside `fluid.body_force`; `nan` "
+          "where the stage has none",
+          output<&Snapshot::pressure_gradient>}),
     {"particle_stress", "Pa",
      "xy stress that the cells add: all forces on membranes, between cells too, and viscosity contrast, "
      "per area of the domain",
      output<&Snapshot::particle_stress>, "Particle stress xy"},
-    marked<&Observable::has_means>(
-        {"first_normal_stress", "Pa",
-         "first normal stress difference that the cells add, xx less yy: positive where they pull along x",
-         output<&Snapshot::first_normal_stress>}),
-    marked<&Observable::in_space>(marked<&Observable::has_means>(
-        {"second_normal_stress", "Pa", "the second one, yy less zz", output<&Snapshot::second_normal_stress>})),
+    mean({"first_normal_stress", "Pa",
+          "first normal stress difference that the cells add, xx less yy: positive where they pull along x",
+          output<&Snapshot::first_normal_stress>}),
+    of_space(
+        mean({"second_normal_stress", "Pa", "the second one, yy less zz", output<&Snapshot::second_normal_stress>})),
     {"mach_max", "", "largest Mach number of the lattice flow at this instant", output<&Snapshot::mach_max>,
      "Largest Mach number"},
     {"area_drift_max", "", "largest relative change of a cell's area since the start, of all cells, at this instant",
@@ -186,45 +179,36 @@ constexpr Observable series_columns[] = {
     {"area_leakage_max", "",
      "largest change of a cell's area or volume that `numerics.area_correction` put back; `nan` without it",
      output<&Snapshot::area_leakage_max>, "Largest area kept from leaking, relative"},
-    marked<&Observable::has_means>(
-        {"flow_rate", "m2/s",
-         "of a driven channel, per depth: integral of the velocity over the cross-section; `nan` elsewhere",
-         output<&Snapshot::flow_rate>}),
-    marked<&Observable::has_means>(
-        {"mean_velocity", "m/s", "of a driven channel, along x: the flow rate over the cross-section; `nan` elsewhere",
-         output<&Snapshot::mean_velocity>}),
-    marked<&Observable::has_means>(
-        {"cell_free_layer_lower", "m",
-         "mean distance from the lower wall to the nearest membrane; `nan` without walls or cells",
-         output<&Snapshot::cell_free_layer_lower>, "Cell-free layer", "lower wall"}),
-    marked<&Observable::has_means>({"cell_free_layer_upper", "m", "likewise, from the upper wall",
-                                    output<&Snapshot::cell_free_layer_upper>, "Cell-free layer", "upper wall"}),
-    marked<&Observable::has_means>(
-        {"cell_free_layer_empty", "",
-         "share of these columns or rays without a cell: above 0.05 the layers are no result; `nan` as they are",
-         output<&Snapshot::cell_free_layer_empty>}),
-    marked<&Observable::has_means>(
-        {"discharge_hematocrit", "",
-         "of a driven flow: flux of what the cells enclose over the flux of all; `nan` elsewhere and without cells",
-         output<&Snapshot::discharge_hematocrit>, "Discharge hematocrit"}),
-    marked<&Observable::has_means>({"aggregate_size_number_mean", "",
-                                    "cells over aggregates; a single cell is an aggregate of one",
-                                    output<&Snapshot::aggregate_size_number_mean>}),
-    marked<&Observable::has_means>(
-        {"aggregate_size_weight_mean", "",
-         "size of the aggregate a cell finds itself in, averaged over the cells: sum n^2 / sum n",
-         output<&Snapshot::aggregate_size_weight_mean>, "Aggregate size, mean over cells"}),
+    mean({"flow_rate", "m2/s",
+          "of a driven channel, per depth: integral of the velocity over the cross-section; `nan` elsewhere",
+          output<&Snapshot::flow_rate>}),
+    mean({"mean_velocity", "m/s", "of a driven channel, along x: the flow rate over the cross-section; `nan` elsewhere",
+          output<&Snapshot::mean_velocity>}),
+    mean({"cell_free_layer_lower", "m",
+          "mean distance from the lower wall to the nearest membrane; `nan` without walls or cells",
+          output<&Snapshot::cell_free_layer_lower>, "Cell-free layer", "lower wall"}),
+    mean({"cell_free_layer_upper", "m", "likewise, from the upper wall", output<&Snapshot::cell_free_layer_upper>,
+          "Cell-free layer", "upper wall"}),
+    mean({"cell_free_layer_empty", "",
+          "share of these columns or rays without a cell: above 0.05 the layers are no result; `nan` as they are",
+          output<&Snapshot::cell_free_layer_empty>}),
+    mean({"discharge_hematocrit", "",
+          "of a driven flow: flux of what the cells enclose over the flux of all; `nan` elsewhere and without cells",
+          output<&Snapshot::discharge_hematocrit>, "Discharge hematocrit"}),
+    mean({"aggregate_size_number_mean", "", "cells over aggregates; a single cell is an aggregate of one",
+          output<&Snapshot::aggregate_size_number_mean>}),
+    mean({"aggregate_size_weight_mean", "",
+          "size of the aggregate a cell finds itself in, averaged over the cells: sum n^2 / sum n",
+          output<&Snapshot::aggregate_size_weight_mean>, "Aggregate size, mean over cells"}),
     bonds_mean({"bonded_size_number_mean", "",
                 "cells over aggregates by bonds: `output.bond_share`; `nan` where nothing attracts",
                 output<&Snapshot::bonded_size_number_mean>}),
     bonds_mean({"bonded_size_weight_mean", "", "the same, averaged over the cells",
                 output<&Snapshot::bonded_size_weight_mean>}),
-    marked<&Observable::has_means>({"contacts_per_cell", "",
-                                    "close cells of a cell, images included: mean over the cells",
-                                    output<&Snapshot::contacts_per_cell>}),
-    marked<&Observable::has_means>({"contact_gap", "m",
-                                    "smallest gap of two close cells: mean over the pairs; `nan` where none are",
-                                    output<&Snapshot::contact_gap>}),
+    mean({"contacts_per_cell", "", "close cells of a cell, images included: mean over the cells",
+          output<&Snapshot::contacts_per_cell>}),
+    mean({"contact_gap", "m", "smallest gap of two close cells: mean over the pairs; `nan` where none are",
+          output<&Snapshot::contact_gap>}),
     {"kinetic_energy", "J/m",
      "of the fluid as it is simulated, `density_factor` times denser than it is; docs/physics.md, "
      "\"Energy\", for this and all below, which are per depth",
@@ -258,8 +242,8 @@ constexpr Observable series_columns[] = {
 constexpr Observable size_columns[] = {
     {"cells", "", "the size: cells of an aggregate", [](const Row& row) -> Value { return row.size; }},
     {"aggregates", "", "how many aggregates have it", [](const Row& row) -> Value { return row.aggregates_of_size; }},
-    marked<&Observable::of_interactions>({"bonded", "", "how many by bonds: `output.bond_share`",
-                                          [](const Row& row) -> Value { return row.bonded_of_size; }}),
+    of_bonds({"bonded", "", "how many by bonds: `output.bond_share`",
+              [](const Row& row) -> Value { return row.bonded_of_size; }}),
 };
 
 std::vector<Observable> with_instant(std::span<const Observable> own) {

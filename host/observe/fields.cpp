@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -227,9 +226,8 @@ FieldSnapshot fields_of(const core::AnyFluid<D>& fluid, const scene::Scene& scen
   add(Moments{}, "vorticity", "1/s", Vorticity<D>::components, true, moments,
       [=](const Row& row, const KnownRows<Moments>& known, double* to) mutable {
         curl.begin(row, known);
-        for (int column = 0; column < columns; ++column) {
+        for (int column = 0; column < columns; ++column)
           for (const double component : curl.at(rows.node(column))) *to++ = component * rate;
-        }
       });
   return snapshot;
 }
@@ -274,9 +272,8 @@ FieldSnapshot observe_fields(const core::AnyFluid<D>& fluid, const scene::Scene&
                                  const WallShear<D> shear(*scene::fluid_region<D>(scene), fluid.setting().domain,
                                                           *fluid.setting().solid, middles);
                                  std::vector<double> values;
-                                 for (const core::Vec<D>& of_facet : shear.of(fluid)) {
+                                 for (const core::Vec<D>& of_facet : shear.of(fluid))
                                    for (int k = 0; k < 3; ++k) values.push_back(k < D ? of_facet[k] * pascal : 0);
-                                 }
                                  if (!values.empty()) take(values);
                                }});
   return snapshot;
@@ -310,9 +307,8 @@ MembraneSnapshot observe_membranes(core::AnySolver<D>& solver, const units::Latt
   };
   const double spacing = units.length, tension = units.to_si(1, units::dimension::tension);
   field("points", "m", D, [&cells, spacing](int cell, std::vector<double>& values) {
-    for (int i = cells.cells[cell].first; i < cells.cells[cell].end(); ++i) {
+    for (int i = cells.cells[cell].first; i < cells.cells[cell].end(); ++i)
       for (int k = 0; k < D; ++k) values.push_back(units::coordinate(cells.position[k][i], spacing));
-    }
   });
   field("tension", "N/m", 1, [&cells, tasks, tension](int cell, std::vector<double>& values) {
     for (const double of_place : tensions_of(cells, cell, tasks->tensions(cell))) values.push_back(of_place * tension);

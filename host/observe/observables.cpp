@@ -47,9 +47,8 @@ void for_each_size(const Snapshot& output, const std::function<void(const Row&)>
 
 std::vector<const Observable*> Table::of(const RunKind& run) const {
   std::vector<const Observable*> chosen;
-  for (const Observable& observable : observables) {
+  for (const Observable& observable : observables)
     if (observable.is_in(run)) chosen.push_back(&observable);
-  }
   return chosen;
 }
 

@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <optional>
 
 #include "bonds.hpp"
-#include "cell_free_layer.hpp"
 #include "cell_sums.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "energy.hpp"

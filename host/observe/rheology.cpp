@@ -1,7 +1,5 @@
 #include "rheology.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

@@ -1,10 +1,8 @@
 #include "rheology_history.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <set>
 

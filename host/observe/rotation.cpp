@@ -117,9 +117,7 @@ std::map<int, double> Rotation::follow(const std::vector<CellContact>& contacts,
     }
     double angle = angle_of_longest(points);
     const auto before = last_.find(cells);
-    if (before != last_.end()) {
-      angle += std::numbers::pi * std::round((before->second - angle) / std::numbers::pi);
-    }
+    if (before != last_.end()) angle += std::numbers::pi * std::round((before->second - angle) / std::numbers::pi);
     angles[label] = angle;
     now.emplace(std::move(cells), angle);
   }

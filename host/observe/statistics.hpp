@@ -3,7 +3,6 @@
 
 #include <limits>
 #include <string>
-#include <vector>
 
 #include "base/curve.hpp"
 #include "json/json.hpp"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <vector>
 
 #include "base/text.hpp"
 #include "constants.hpp"
@@ -17,7 +16,6 @@
 #include "scene/driving_flow.hpp"
 #include "scene/lattice.hpp"
 #include "shape/extent.hpp"
-#include "shape/outline.hpp"
 
 namespace rouleau::plan {
 
@@ -136,6 +134,115 @@ double largest_held_strain_of(const Plan& plan) {
   return std::min(largest_held_strain / held_on_companions, plan.numerics_choice->target);
 }
 
+/// What a well squeezes cells with, where nothing keeps a cell's own faces apart.
+void add_depth(const LimitedStage& of, std::size_t i, const std::string& named, const Well& well, LimitList& limits) {
+  const scene::Interaction& interaction = of.scene.interactions[i];
+  const double depth = depth_over_bending(of.plan, of.plan.facts, of.stage, interaction, well.depth);
+  if (!(depth > 0)) return;
+  limits.below("depth of " + named + " over bending modulus / radius^2, without a repulsion within membranes", depth,
+               deepest_well_of_bare_cells[of.by_dimension],
+               "cells that come to rest may be squeezed until their own faces touch; add an interaction between [" +
+                   in_quotes(of.scene.cell_types[interaction.between[0]].name) +
+                   ", \"self\"], such as \"repulsion\" with about three times the well's depth and a cutoff below the "
+                   "cells' least thickness");
+}
+
+/// Whether the lattice resolves the potential.
+void add_lengths(const PotentialShape& shape, bool wall, const std::string& named, LimitList& limits) {
+  constexpr RemediedBy resolution = RemediedBy::resolution;
+  if (!shape.well) {
+    limits.above("range of the repulsion of " + named + " in lattice spacings", shape.range, least_gap,
+                 std::string("raise the resolution or the range: nearer than that the lattice ") +
+                     (wall ? "holds a membrane to the wall" : "moves two membranes together") +
+                     ", whatever acts between them",
+                 resolution);
+    return;
+  }
+  limits.above(
+      "equilibrium gap of " + named + " in lattice spacings", shape.well->distance, least_gap,
+      std::string("raise the resolution or move the well outwards: where the lattice does not resolve the gap, "
+                  "membranes ") +
+          (wall ? "never leave the wall" : "never separate"),
+      resolution);
+  limits.above("width of the well of " + named + " in lattice spacings", shape.well->width(),
+               wall ? narrowest_well_of_a_wall : narrowest_well,
+               std::string("raise the resolution or take a wider well: the corners of membranes catch ") +
+                   (wall ? "in" : "on each other in") + " a narrow one",
+               resolution);
+}
+
+/// Smallest gaps at the start, lattice spacings; infinite where nothing is near.
+struct StartGaps {
+  double cells = std::numeric_limits<double>::infinity();  ///< between two cells, images included
+  double walls = cells;                                    ///< to plane walls
+  double region = cells;                                   ///< to the wall of a tube, or of any shape, however far
+};
+constexpr double gap_reach = 2;  // spacings
+
+double gap_between(const core::Membranes& cells, const core::Domain<2>& domain) {
+  const core::CellGrid<2> grid(core::boxes_of<2>(cells), gap_reach, domain);
+  double gap = std::numeric_limits<double>::infinity();
+  std::vector<int> near;
+  for (int cell = 0; cell < cells.cell_count(); ++cell) {
+    grid.find(cell, near);
+    for (const int other : near) gap = std::min(gap, core::smallest_gap(cells, cell, other, domain, gap_reach));
+  }
+  return gap;
+}
+
+double gap_between(const core::Surfaces& cells, const core::Domain<3>& domain) {
+  const core::TriangleContacts contacts = core::TriangleContacts::within(gap_reach, cells, domain);
+  double gap = std::numeric_limits<double>::infinity();
+  std::vector<core::TriangleContact> of_cell;
+  for (int cell = 0; cell < cells.cell_count(); ++cell) {
+    contacts.find(cell, cells, of_cell);
+    for (const core::TriangleContact& contact : of_cell) gap = std::min(gap, contact.distance);
+  }
+  return gap;
+}
+
+template <int D>
+void measure(const scene::Scene& scene, StartGaps& gaps) {
+  const core::Cells<D> cells = make_known_cells<D>(scene, [](int) { return true; });
+  const core::Domain<D> domain = scene::lattice_domain<D>(scene);
+  gaps.cells = std::min(gaps.cells, gap_between(cells, domain));
+  if (const core::RegionPointer<D> region = scene::fluid_region<D>(scene))
+    for (const core::CellRange& cell : cells.cells)
+      gaps.region = std::min(gaps.region, core::nearest_to_border(cells, cell, *region).distance);
+  if (scene.domain.tube_radius) return;
+  const auto& places = cells.position;
+  for (int k = 1; k < D; ++k) {
+    if (!domain.walled(k)) continue;
+    const auto [least, most] = std::minmax_element(places[k].begin(), places[k].end());
+    const double gap = std::min(*least + 0.5, domain.size[k] - 0.5 - *most);
+    if (gap < gap_reach) gaps.walls = std::min(gaps.walls, gap);
+  }
+}
+
+/// Of cells that are nearer than two spacings. Cells at random, which need not have been placed, count with the gap
+/// that they keep, in a tube and between walls of any shape always, else where it is below the least one. Of more than
+/// 20 000 others gaps are not looked for: the file that has them is taken as it is.
+StartGaps start_gaps(const scene::Scene& scene) {
+  constexpr std::size_t most = 20'000;
+  StartGaps gaps;
+  scene::Scene placed = scene;
+  placed.cells.resize(scene.placed().size());
+  placed.fed = 0;
+  for (auto packing = scene.packings.rbegin(); packing != scene.packings.rend(); ++packing) {
+    const auto first = placed.cells.begin() + packing->first;
+    placed.cells.erase(first, first + packing->count);
+    const double gap = packing->gap / scene::lattice_spacing(scene);
+    if (scene.domain.tube_radius || scene.domain.has_shapes()) gaps.region = std::min(gaps.region, gap);
+    if (!(gap < least_gap_at_start)) continue;
+    gaps.cells = std::min(gaps.cells, gap);
+    if (scene::has_walls(scene.domain) && !scene.domain.tube_radius) gaps.walls = std::min(gaps.walls, gap);
+  }
+  if (placed.cells.empty() || placed.cells.size() > most) return gaps;
+  scene::in_dimension(scene.domain.dimension(),
+                      [&]<int D>(std::integral_constant<int, D>) { measure<D>(placed, gaps); });
+  return gaps;
+}
+
 }  // namespace
 
 void add_stiffness(const LimitedStage& of, LimitList& limits) {
@@ -177,47 +284,6 @@ void add_slip_and_prestress(const LimitedStage& of, LimitList& limits) {
   }
 }
 
-namespace {
-
-/// What a well squeezes cells with, where nothing keeps a cell's own faces apart.
-void add_depth(const LimitedStage& of, std::size_t i, const std::string& named, const Well& well, LimitList& limits) {
-  const scene::Interaction& interaction = of.scene.interactions[i];
-  const double depth = depth_over_bending(of.plan, of.plan.facts, of.stage, interaction, well.depth);
-  if (!(depth > 0)) return;
-  limits.below("depth of " + named + " over bending modulus / radius^2, without a repulsion within membranes", depth,
-               deepest_well_of_bare_cells[of.by_dimension],
-               "cells that come to rest may be squeezed until their own faces touch; add an interaction between [" +
-                   in_quotes(of.scene.cell_types[interaction.between[0]].name) +
-                   ", \"self\"], such as \"repulsion\" with about three times the well's depth and a cutoff below the "
-                   "cells' least thickness");
-}
-
-/// Whether the lattice resolves the potential.
-void add_lengths(const PotentialShape& shape, bool wall, const std::string& named, LimitList& limits) {
-  constexpr RemediedBy resolution = RemediedBy::resolution;
-  if (!shape.well) {
-    limits.above("range of the repulsion of " + named + " in lattice spacings", shape.range, least_gap,
-                 std::string("raise the resolution or the range: nearer than that the lattice ") +
-                     (wall ? "holds a membrane to the wall" : "moves two membranes together") +
-                     ", whatever acts between them",
-                 resolution);
-    return;
-  }
-  limits.above(
-      "equilibrium gap of " + named + " in lattice spacings", shape.well->distance, least_gap,
-      std::string("raise the resolution or move the well outwards: where the lattice does not resolve the gap, "
-                  "membranes ") +
-          (wall ? "never leave the wall" : "never separate"),
-      resolution);
-  limits.above("width of the well of " + named + " in lattice spacings", shape.well->width(),
-               wall ? narrowest_well_of_a_wall : narrowest_well,
-               std::string("raise the resolution or take a wider well: the corners of membranes catch ") +
-                   (wall ? "in" : "on each other in") + " a narrow one",
-               resolution);
-}
-
-}  // namespace
-
 void add_potentials(const LimitedStage& of, LimitList& limits) {
   const std::vector<PlannedModel>& interactions = of.plan.interactions;
   for (std::size_t i = 0; i < interactions.size(); ++i) {
@@ -243,83 +309,6 @@ void add_potentials(const LimitedStage& of, LimitList& limits) {
     add_lengths(shape, wall, named, limits);
   }
 }
-
-namespace {
-
-/// Smallest gaps at the start, lattice spacings; infinite where nothing is near.
-struct StartGaps {
-  double cells = std::numeric_limits<double>::infinity();  ///< between two cells, images included
-  double walls = cells;                                    ///< to plane walls
-  double region = cells;                                   ///< to the wall of a tube, or of any shape, however far
-};
-constexpr double gap_reach = 2;  // spacings
-
-double gap_between(const core::Membranes& cells, const core::Domain<2>& domain) {
-  const core::CellGrid<2> grid(core::boxes_of<2>(cells), gap_reach, domain);
-  double gap = std::numeric_limits<double>::infinity();
-  std::vector<int> near;
-  for (int cell = 0; cell < cells.cell_count(); ++cell) {
-    grid.find(cell, near);
-    for (const int other : near) gap = std::min(gap, core::smallest_gap(cells, cell, other, domain, gap_reach));
-  }
-  return gap;
-}
-
-double gap_between(const core::Surfaces& cells, const core::Domain<3>& domain) {
-  const core::TriangleContacts contacts = core::TriangleContacts::within(gap_reach, cells, domain);
-  double gap = std::numeric_limits<double>::infinity();
-  std::vector<core::TriangleContact> of_cell;
-  for (int cell = 0; cell < cells.cell_count(); ++cell) {
-    contacts.find(cell, cells, of_cell);
-    for (const core::TriangleContact& contact : of_cell) gap = std::min(gap, contact.distance);
-  }
-  return gap;
-}
-
-template <int D>
-void measure(const scene::Scene& scene, StartGaps& gaps) {
-  const core::Cells<D> cells = make_known_cells<D>(scene, [](int) { return true; });
-  const core::Domain<D> domain = scene::lattice_domain<D>(scene);
-  gaps.cells = std::min(gaps.cells, gap_between(cells, domain));
-  if (const core::RegionPointer<D> region = scene::fluid_region<D>(scene)) {
-    for (const core::CellRange& cell : cells.cells)
-      gaps.region = std::min(gaps.region, core::nearest_to_border(cells, cell, *region).distance);
-  }
-  if (scene.domain.tube_radius) return;
-  const auto& places = cells.position;
-  for (int k = 1; k < D; ++k) {
-    if (!domain.walled(k)) continue;
-    const auto [least, most] = std::minmax_element(places[k].begin(), places[k].end());
-    const double gap = std::min(*least + 0.5, domain.size[k] - 0.5 - *most);
-    if (gap < gap_reach) gaps.walls = std::min(gaps.walls, gap);
-  }
-}
-
-/// Of cells that are nearer than two spacings. Cells at random, which need not have been placed, count with the gap
-/// that they keep, in a tube and between walls of any shape always, else where it is below the least one. Of more than
-/// 20 000 others gaps are not looked for: the file that has them is taken as it is.
-StartGaps start_gaps(const scene::Scene& scene) {
-  constexpr std::size_t most = 20'000;
-  StartGaps gaps;
-  scene::Scene placed = scene;
-  placed.cells.resize(scene.placed().size());
-  placed.fed = 0;
-  for (auto packing = scene.packings.rbegin(); packing != scene.packings.rend(); ++packing) {
-    const auto first = placed.cells.begin() + packing->first;
-    placed.cells.erase(first, first + packing->count);
-    const double gap = packing->gap / scene::lattice_spacing(scene);
-    if (scene.domain.tube_radius || scene.domain.has_shapes()) gaps.region = std::min(gaps.region, gap);
-    if (!(gap < least_gap_at_start)) continue;
-    gaps.cells = std::min(gaps.cells, gap);
-    if (scene::has_walls(scene.domain) && !scene.domain.tube_radius) gaps.walls = std::min(gaps.walls, gap);
-  }
-  if (placed.cells.empty() || placed.cells.size() > most) return gaps;
-  scene::in_dimension(scene.domain.dimension(),
-                      [&]<int D>(std::integral_constant<int, D>) { measure<D>(placed, gaps); });
-  return gaps;
-}
-
-}  // namespace
 
 void add_gaps(const LimitedStage& of, LimitList& limits) {
   const StartGaps gaps = start_gaps(of.scene);

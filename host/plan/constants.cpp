@@ -23,9 +23,8 @@ constexpr std::array<KernelFacts, 5> kernels{{
 }  // namespace
 
 const KernelFacts& kernel_named(const std::string& name) {
-  for (const KernelFacts& facts : kernels) {
+  for (const KernelFacts& facts : kernels)
     if (facts.name == name) return facts;
-  }
   throw std::logic_error("no kernel is called " + name);
 }
 

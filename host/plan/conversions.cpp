@@ -7,7 +7,6 @@
 #include "flow.hpp"
 #include "scene/lattice.hpp"
 #include "shape/extent.hpp"
-#include "shape/outline.hpp"
 #include "units/lattice_units.hpp"
 
 namespace rouleau::plan {
@@ -42,9 +41,7 @@ void add_fluid(const scene::Scene& scene, const scene::StageSetting& stage, Rows
     rows.convert("viscosity", layer.viscosity, "Pa s", units::dimension::viscosity,
                  "the layer from " + number(layer.from * 1e6, 4) + " um to " + number(layer.to * 1e6, 4) + " um");
   }
-  if (stage.stage->shear_rate != 0) {
-    rows.add("shear rate", stage.stage->shear_rate, "1/s", stage.shear_rate);
-  }
+  if (stage.stage->shear_rate != 0) rows.add("shear rate", stage.stage->shear_rate, "1/s", stage.shear_rate);
 }
 
 void add_drive(const scene::Scene& scene, const scene::StageSetting& stage, Rows& rows) {
@@ -58,9 +55,8 @@ void add_drive(const scene::Scene& scene, const scene::StageSetting& stage, Rows
   } else if (stage.shear_rate != 0) {
     wall("wall speed", stage.walls.upper);
   }
-  if (stage.stage->mean_velocity) {
+  if (stage.stage->mean_velocity)
     rows.convert("mean velocity", *stage.stage->mean_velocity, "m/s", units::dimension::velocity);
-  }
   if (stage.openings) {
     const double inlet = stage.openings->front().value;
     if (stage.openings->front().kind == core::Opening::Kind::velocity) {
@@ -84,9 +80,8 @@ void add_drive(const scene::Scene& scene, const scene::StageSetting& stage, Rows
   if (stage.oscillation.any()) {
     if (stage.stage->oscillates())
       rows.convert("frequency of the oscillation", stage.stage->oscillation.frequency, "Hz", units::dimension::rate);
-    if (stage.oscillating_rate != 0) {
+    if (stage.oscillating_rate != 0)
       rows.convert("amplitude of the shear rate", stage.stage->oscillation.shear_rate, "1/s", units::dimension::rate);
-    }
     if (stage.stage->oscillation.mean_wall_speed != 0) {
       wall("amplitude of the lower wall's speed", stage.oscillation.walls.lower);
       wall("amplitude of the upper wall's speed", stage.oscillation.walls.upper);

@@ -5,10 +5,8 @@
 #include <numbers>
 #include <variant>
 
-#include "constants.hpp"
 #include "flow.hpp"
 #include "shape/extent.hpp"
-#include "shape/outline.hpp"
 
 namespace rouleau::plan {
 

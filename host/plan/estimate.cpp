@@ -11,7 +11,6 @@
 #include "scene/lattice.hpp"
 #include "scene/output_schedule.hpp"
 #include "shape/extent.hpp"
-#include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
 
 namespace rouleau::plan {

@@ -1,11 +1,9 @@
 #include "facts.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "base/text.hpp"
-#include "constants.hpp"
 #include "core/coupling/slip_constants.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "core/membrane/node_mobility.hpp"
@@ -14,7 +12,6 @@
 #include "core/surface/surface_viscosity.hpp"
 #include "scene/driving_flow.hpp"
 #include "shape/extent.hpp"
-#include "shape/outline.hpp"
 
 namespace rouleau::plan {
 
@@ -50,18 +47,6 @@ std::vector<double> what_it_stands_for(const PlannedModel& model) {
   }
   return values;
 }
-
-}  // namespace
-
-void to_json(Json& json, const InteractionWell& described) {
-  json = well_json(described.well);
-  json["model"] = described.model;
-  json["between"] = described.between;
-  if (described.stands_for) json["stands_for"] = well_json(*described.stands_for);
-  if (described.widened) json["widened"] = *described.widened;
-}
-
-namespace {
 
 /// Of an interaction without a well whose depth (a parameter with that role) is not 0; empty for any other.
 std::string why_it_attracts_nowhere(const PlannedModel& model) {
@@ -196,6 +181,14 @@ ModelFacts model_facts(const Models& models, const scene::StageSetting& stage, c
 
 }  // namespace
 
+void to_json(Json& json, const InteractionWell& described) {
+  json = well_json(described.well);
+  json["model"] = described.model;
+  json["between"] = described.between;
+  if (described.stands_for) json["stands_for"] = well_json(*described.stands_for);
+  if (described.widened) json["widened"] = *described.widened;
+}
+
 Facts find_facts(const Models& models) {
   const scene::Scene& scene = *models.scene;
   Facts facts;
@@ -271,12 +264,10 @@ scene::Attractions attracting_types(const Models& models, const std::vector<Inte
 
 double deepest_well(const Models& models, const std::vector<InteractionWell>& wells) {
   double deepest = std::nan("");
-  for (const PlannedModel& model : models.interactions) {
+  for (const PlannedModel& model : models.interactions)
     if (models.has_cells && !model.remembers()) deepest = 0;
-  }
-  for (const InteractionWell& described : wells) {
+  for (const InteractionWell& described : wells)
     if (described.well.attracts()) deepest = std::max(deepest, described.well.depth);
-  }
   return deepest;
 }
 

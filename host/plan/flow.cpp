@@ -12,7 +12,6 @@
 #include "scene/driving_flow.hpp"
 #include "scene/lattice.hpp"
 #include "shape/extent.hpp"
-#include "shape/outline.hpp"
 
 namespace rouleau::plan {
 
@@ -92,9 +91,8 @@ CellTravel cell_travel(const scene::Scene& scene, const scene::StageSetting& sta
   const double spacing = stage.units.length, height = scene::wall_distance(domain) / spacing;
   const double viscosity = core::viscosity_of(stage.tau);
   double cell_radius = 0;
-  for (const scene::CellPlacement& cell : scene.cells) {
+  for (const scene::CellPlacement& cell : scene.cells)
     cell_radius = std::max(cell_radius, shape::shape_radius(scene.cell_types[cell.type].shape) / spacing);
-  }
   CellTravel travel;
   const auto add = [&](double shear_rate, const scene::Vector& force, const core::WallVelocity& walls) {
     const scene::Vector drive = scene::unheld(force, domain);

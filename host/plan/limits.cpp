@@ -174,9 +174,8 @@ std::vector<Limit> find_limits(const Plan& plan) {
   for (const scene::StageSetting& stage : plan.stages) {
     limits.begin_stage(stage.index);
     const LimitedStage of(plan, stage);
-    for (const StageLimits& each : stage_limits) {
+    for (const StageLimits& each : stage_limits)
       if ((!each.of_cells || plan.has_cells) && (!each.of_first_stage || stage.index == 0)) each.add(of, limits);
-    }
   }
   return std::move(limits).sorted();
 }

@@ -5,7 +5,6 @@
 
 #include "base/text.hpp"
 #include "plugin/model.hpp"
-#include "scene/driving_flow.hpp"
 
 namespace rouleau::plan {
 
@@ -52,11 +51,10 @@ std::vector<Demand> demands_on_operator(const Models& models) {
   const auto ask = [&](What what, const char* quantity, const std::string& why) {
     demands.push_back({what, quantity, why});
   };
-  if (!scene.fluid.layers.empty()) {
+  if (!scene.fluid.layers.empty())
     ask(What::takes, "relaxation_rate", "fluid.layers have other viscosities");
-  } else if (models.viscosity_contrast) {
+  else if (models.viscosity_contrast)
     ask(What::takes, "relaxation_rate", "inside of the cells the fluid has another viscosity");
-  }
   if (models.has_cells) {
     ask(What::takes, "force", "membranes act on the fluid");
     ask(What::gives, "velocity", "membranes move with the fluid");
@@ -91,14 +89,12 @@ void require(const std::vector<Demand>& demands, const PlannedModel& model, cons
   };
   if (all_met(*model.manifest)) return;
   std::string problem = in_quotes(model.manifest->id) + " cannot be used here:";
-  for (const Demand& demand : demands) {
+  for (const Demand& demand : demands)
     if (!meets(*model.manifest, demand)) problem += "\n  " + in_words(demand);
-  }
   std::vector<std::string> others;
-  for (const plugin::Manifest& manifest : catalog.manifests()) {
+  for (const plugin::Manifest& manifest : catalog.manifests())
     if (manifest.kind == model.manifest->kind && manifest.works_in(scene.domain.dimension()) && all_met(manifest))
       others.push_back(manifest.id);
-  }
   std::sort(others.begin(), others.end());
   throw Error(Cause::bad_input, scene.place(model.pointer + "/model"), problem,
               {others.empty() ? "no model that was found can" : "take one that can: " + listed(others)});
@@ -109,10 +105,9 @@ void require_lattice(const Models& models, const plugin::Catalog& catalog, Fault
   const scene::Scene& scene = *models.scene;
   if (models.collision.manifest == nullptr || models.collision.manifest->works_in(scene.domain.dimension())) return;
   std::vector<std::string> others;
-  for (const plugin::Manifest& manifest : catalog.manifests()) {
+  for (const plugin::Manifest& manifest : catalog.manifests())
     if (manifest.kind == plugin::ModelKind::collision && manifest.works_in(scene.domain.dimension()))
       others.push_back(manifest.id);
-  }
   const scene::DimensionWords& words = scene.domain.words();
   faults.add(Error(Cause::bad_input, scene.place(models.collision.pointer + "/model"),
                    in_quotes(models.collision.manifest->id) + " does not work on " + words.lattice +
@@ -203,9 +198,8 @@ std::shared_ptr<const StageModels> made_for(const Models& models, const scene::S
 std::string Models::owner_of(const PlannedModel& model) const {
   const auto name = [&](int type) { return scene->cell_types[type].name; };
   for (std::size_t type = 0; type < membranes.size(); ++type) {
-    for (const PlannedModel& law : membranes[type]) {
+    for (const PlannedModel& law : membranes[type])
       if (&law == &model) return name(static_cast<int>(type));
-    }
   }
   for (std::size_t i = 0; i < interactions.size(); ++i) {
     if (&interactions[i] != &model) continue;
@@ -223,13 +217,11 @@ std::vector<const PlannedModel*> Models::active_models() const {
       return cell.type == static_cast<int>(type);
     });
     if (!used) continue;
-    for (const PlannedModel& law : membranes[type]) {
+    for (const PlannedModel& law : membranes[type])
       if (law.active()) models.push_back(&law);
-    }
   }
-  for (const PlannedModel& potential : interactions) {
+  for (const PlannedModel& potential : interactions)
     if (potential.active()) models.push_back(&potential);
-  }
   return models;
 }
 
@@ -244,9 +236,8 @@ Models choose_models(const scene::Scene& scene, const plugin::Catalog& catalog, 
       layered || std::any_of(scene.cells.begin(), scene.cells.end(), [&](const scene::CellPlacement& cell) {
         return scene.cell_types[cell.type].interior_viscosity != scene.fluid.viscosity;
       });
-  for (int i = 0; i < static_cast<int>(scene.stages.size()); ++i) {
+  for (int i = 0; i < static_cast<int>(scene.stages.size()); ++i)
     faults.attempt([&] { models.stages.push_back(scene::make_stage_setting(scene, i)); });
-  }
   faults.attempt([&] { require(demands_on_operator(models), models.collision, scene, catalog); });
   return models;
 }

@@ -7,7 +7,6 @@
 
 #include "base/text.hpp"
 #include "constants.hpp"
-#include "json/document.hpp"
 #include "json/json_pointer.hpp"
 #include "numerics_problem.hpp"
 #include "scene/driving_flow.hpp"
@@ -44,6 +43,47 @@ Json three_digits_below(double value) {
   return rounded;
 }
 
+/// Gives "numerics": "auto" the form of an object.
+void spell_out_numerics(json::Document& document) {
+  if (!document.root().at("numerics").is_object()) document.put("/numerics", {{"auto", Json::object()}}, origin);
+}
+
+/// Gives a document values with which it can be read; they mean nothing.
+void put_draft_numerics(json::Document& document) {
+  const Json root = document.root();
+  const scene::SceneFields fields(document);
+  const int dimension = static_cast<int>(root.at("domain").at("size").size());
+  if (!root.at("domain").contains("nodes")) {
+    const auto lattice =
+        scene::coarsest_lattice(fields.quantities("/domain/size", "m", scene::range::length, dimension));
+    if (!lattice) {
+      const std::string most = std::to_string(scene::most_coarse_rows);
+      const std::array wrong{
+          "the ratio of these sides is not one of whole numbers up to " + most +
+              ", so that no lattice with the same spacing along both can be chosen\n"
+              "write sides with a simple ratio, such as [\"50 um\", \"25 um\"], or give nodes",
+          "the ratios of these sides are not those of whole numbers up to " + most +
+              ", or want more nodes than can be computed (" + std::to_string(scene::most_nodes_of_block) +
+              "), so that no lattice with the same spacing along all three can be chosen\n"
+              "write sides with simple ratios, such as [\"50 um\", \"25 um\", \"25 um\"], or give nodes"};
+      fields.refuse("/domain/size", wrong[dimension - 2]);
+    }
+    // As fine as a lattice that might be chosen: a region of output must hold nodes.
+    const int factor = std::max(1, 1024 / *std::max_element(lattice->begin(), lattice->end()));
+    document.put("/domain/nodes", scene::refined(*lattice, factor).value(), origin);
+  }
+  const Json types = root.value("cell_types", Json::object());
+  for (const auto& [name, type] : types.items()) {
+    const std::string cell = json::child_pointer("/cell_types", name);
+    const auto& [key, but_of, count] = draft_pieces[dimension - 2];
+    if (!type.contains(key) && !type.at("shape").contains(but_of)) document.put(cell + "/" + key, count, origin);
+  }
+}
+
+bool leaves_numerics_open(const Json& numerics) {
+  return numerics == "auto" || (numerics.is_object() && numerics.contains("auto"));
+}
+
 }  // namespace
 
 std::string NumericsProblem::why_density_factor(const Trial& best, std::size_t stage, const std::string& gain) const {
@@ -60,18 +100,15 @@ std::string NumericsProblem::why_density_factor(const Trial& best, std::size_t s
   const ErrorShares error = error_of(flow, factor, compression_of(spacing_of(best.nodes), best.tau));
   std::string why = "simulated Reynolds number " + number(momentum_time_ * flow.rate * factor, 3) + ": " +
                     number(100 * error.inertia, 2) + " % of error";
-  if (error.start > 0) {
-    why += ", and " + number(100 * error.start, 2) + " % by the start of the flow" + gain;
-  }
+  if (error.start > 0) why += ", and " + number(100 * error.start, 2) + " % by the start of the flow" + gain;
   if (limited) why += "; more is beyond a limit of the plan";
   return why;
 }
 
 std::optional<std::size_t> NumericsProblem::least_dense(const Trial& best) const {
   std::optional<std::size_t> least;
-  for (std::size_t i = 0; i < flows_.size(); ++i) {
+  for (std::size_t i = 0; i < flows_.size(); ++i)
     if (!flows_[i].given_factor && (!least || best.density_factors[i] < best.density_factors[*least])) least = i;
-  }
   return least;
 }
 
@@ -86,10 +123,9 @@ void NumericsProblem::choose_density_factors(const Trial& best, NumericsChoice& 
                              why_density_factor(best, stage, gain)});
   };
   choose("/numerics", *least);
-  for (std::size_t i = 0; i < flows_.size(); ++i) {
+  for (std::size_t i = 0; i < flows_.size(); ++i)
     if (!flows_[i].given_factor && best.density_factors[i] > much * best.density_factors[*least])
       choose(scene_.stages[i].pointer, i);
-  }
 }
 
 /// What flows that are developed from the start would save; empty: little.
@@ -190,51 +226,6 @@ std::string NumericsProblem::doubt_about(const Trial& best) const {
     return unknown("capillary number", most, measured.least, measured.most);
   return {};
 }
-
-namespace {
-
-/// Gives "numerics": "auto" the form of an object.
-void spell_out_numerics(json::Document& document) {
-  if (!document.root().at("numerics").is_object()) document.put("/numerics", {{"auto", Json::object()}}, origin);
-}
-
-/// Gives a document values with which it can be read; they mean nothing.
-void put_draft_numerics(json::Document& document) {
-  const Json root = document.root();
-  const scene::SceneFields fields(document);
-  const int dimension = static_cast<int>(root.at("domain").at("size").size());
-  if (!root.at("domain").contains("nodes")) {
-    const auto lattice =
-        scene::coarsest_lattice(fields.quantities("/domain/size", "m", scene::range::length, dimension));
-    if (!lattice) {
-      const std::string most = std::to_string(scene::most_coarse_rows);
-      const std::array wrong{
-          "the ratio of these sides is not one of whole numbers up to " + most +
-              ", so that no lattice with the same spacing along both can be chosen\n"
-              "write sides with a simple ratio, such as [\"50 um\", \"25 um\"], or give nodes",
-          "the ratios of these sides are not those of whole numbers up to " + most +
-              ", or want more nodes than can be computed (" + std::to_string(scene::most_nodes_of_block) +
-              "), so that no lattice with the same spacing along all three can be chosen\n"
-              "write sides with simple ratios, such as [\"50 um\", \"25 um\", \"25 um\"], or give nodes"};
-      fields.refuse("/domain/size", wrong[dimension - 2]);
-    }
-    // As fine as a lattice that might be chosen: a region of output must hold nodes.
-    const int factor = std::max(1, 1024 / *std::max_element(lattice->begin(), lattice->end()));
-    document.put("/domain/nodes", scene::refined(*lattice, factor).value(), origin);
-  }
-  const Json types = root.value("cell_types", Json::object());
-  for (const auto& [name, type] : types.items()) {
-    const std::string cell = json::child_pointer("/cell_types", name);
-    const auto& [key, but_of, count] = draft_pieces[dimension - 2];
-    if (!type.contains(key) && !type.at("shape").contains(but_of)) document.put(cell + "/" + key, count, origin);
-  }
-}
-
-bool leaves_numerics_open(const Json& numerics) {
-  return numerics == "auto" || (numerics.is_object() && numerics.contains("auto"));
-}
-
-}  // namespace
 
 OpenScene::OpenScene(json::Document document, Faults& faults) : document_(std::move(document)) {
   if (!faults.empty() || !leaves_numerics_open(document_.root().value("numerics", Json()))) return;

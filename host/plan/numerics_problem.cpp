@@ -35,9 +35,8 @@ bool can_be_steady(const scene::Scene& scene) {
   const double off = near_the_middle * shape::smallest_radius(scene);
   const scene::Domain& domain = scene.domain;
   const scene::Vector from_middle = scene.cells[0].center - 0.5 * domain.size;
-  for (int axis = 0; axis < domain.dimension(); ++axis) {
+  for (int axis = 0; axis < domain.dimension(); ++axis)
     if (!domain.periodic[axis] && std::abs(from_middle[axis]) > off) return false;
-  }
   return true;
 }
 
@@ -133,9 +132,8 @@ double NumericsProblem::half_width() const {
   if (domain.has_shapes()) return domain.region_width / 2;
   if (domain.dimension() == 2 || !scene::has_walls(domain)) return domain.size.least() / 2;
   double apart = INFINITY;
-  for (int axis = 1; axis < domain.dimension(); ++axis) {
+  for (int axis = 1; axis < domain.dimension(); ++axis)
     if (!domain.periodic[axis]) apart = std::min(apart, domain.across(axis));
-  }
   return apart / 2;
 }
 
@@ -163,9 +161,8 @@ NumericsProblem::Trial NumericsProblem::cheapest() const {
   if (!pinned("tau").is_null()) taus = {pinned("tau").get<double>()};
   std::vector<Trial> trials;
   double least = INFINITY;  // error that can be had
-  for (const auto& nodes : lattices()) {
+  for (const auto& nodes : lattices())
     for (const double tau : taus) least = std::min(least, trials.emplace_back(tried(nodes, tau)).error.total());
-  }
   // Where none keeps the target, a tenth more than the least error may come from the lattice: a finer one would hardly
   // help.
   const double enough = std::max(goal() * (1 + 1e-9), 1.1 * least);
@@ -300,12 +297,11 @@ double NumericsProblem::most_density_factor(const Flow& flow, double error, doub
 /// A scene that says how long only by `until` counts as a second in each stage.
 double NumericsProblem::duration(const std::vector<double>& density_factors) const {
   double all = 0, without_end = 0;
-  for (std::size_t i = 0; i < flows_.size(); ++i) {
+  for (std::size_t i = 0; i < flows_.size(); ++i)
     if (std::isfinite(flows_[i].seconds))
       all += flows_[i].seconds / density_factors[i];
     else
       without_end += 1 / density_factors[i];
-  }
   return all > 0 ? all : without_end;
 }
 

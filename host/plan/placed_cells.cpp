@@ -183,9 +183,8 @@ class PlacementChecker {
     for (int c = 0; c < surfaces.cell_count(); ++c) {
       grid.find(c, near);
       std::sort(near.begin(), near.end());
-      for (const int other : near) {
+      for (const int other : near)
         if (other < c) check_apart(surfaces, c, other);
-      }
     }
   }
   /// Of all images of the other cell the one that is nearest lies nearest along each axis.
@@ -266,9 +265,8 @@ void try_in_strips(const scene::Scene& scene, double spacing, std::size_t of_str
   const core::Domain<2> domain = scene::lattice_domain(scene);
   const core::Membranes none = without_cells<2>(scene, spacing);
   double reach = 0;  // of any outline from its centre, spacings
-  for (const auto& shape : none.types) {
+  for (const auto& shape : none.types)
     for (std::size_t i = 0; i < shape->x.size(); ++i) reach = std::max(reach, std::hypot(shape->x[i], shape->y[i]));
-  }
   const double period = domain.period(1);
   std::vector<double> height;
   for (const scene::CellPlacement& cell : scene.placed()) {
@@ -345,13 +343,12 @@ template core::Membranes make_known_cells<2>(const scene::Scene&, const std::fun
 template core::Surfaces make_known_cells<3>(const scene::Scene&, const std::function<bool(int)>&);
 
 void try_cells(const scene::Scene& scene, std::size_t of_strip) {
-  if (scene.domain.dimension() == 3) {
+  if (scene.domain.dimension() == 3)
     make_cells<3>(scene);
-  } else if (scene.placed().size() > of_strip) {
+  else if (scene.placed().size() > of_strip)
     try_in_strips(scene, scene::lattice_spacing(scene), of_strip);
-  } else {
+  else
     make_cells<2>(scene);
-  }
 }
 
 }  // namespace rouleau::plan

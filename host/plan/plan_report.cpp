@@ -11,7 +11,6 @@
 #include "scene/lattice.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/extent.hpp"
-#include "shape/outline.hpp"
 #include "shape/random_cells.hpp"
 
 namespace rouleau::plan {
@@ -160,9 +159,8 @@ std::vector<Omission> omissions(const Plan& plan) {
   }
   for (const PlannedModel& model : plan.interactions) omit_inactive("interaction", model);
   for (const auto& laws : plan.membranes) {
-    for (const PlannedModel& law : laws) {
+    for (const PlannedModel& law : laws)
       if (plan.has_cells) omit_inactive("membrane law", law);
-    }
   }
   if (!scene.fluid.inertia) {
     const bool follows = std::any_of(plan.facts.stages.begin(), plan.facts.stages.end(),
@@ -241,9 +239,8 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
                          number(nearest * spacing * 1e6, 6) + " um it lies between two rows");
     }
   }
-  if (const KernelFacts& kernel = kernel_named(scene.numerics.kernel); plan.has_cells && *kernel.defect != 0) {
+  if (const KernelFacts& kernel = kernel_named(scene.numerics.kernel); plan.has_cells && *kernel.defect != 0)
     warnings.push_back(std::string("kernel ") + kernel.name + ": " + kernel.defect);
-  }
   // Models that remember, such as bonds, may attract too, though they have no well.
   const bool only_repulsion = deepest_well(plan, wells) == 0 &&
                               std::all_of(plan.interactions.begin(), plan.interactions.end(),
@@ -280,10 +277,6 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
   }
   return warnings;
 }
-
-}  // namespace
-
-namespace {
 
 std::vector<LateStart> late_starts(const Plan& plan) {
   constexpr double slight = 0.01;
@@ -333,12 +326,10 @@ PlanReport make_report(const Plan& plan) {
   report.attracting = attracting_types(plan, report.wells);
   report.close_gap = plan.scene->output.aggregate_gap;
   report.warnings = warnings_of(plan, report.limits, report.wells);
-  for (const MembraneFacts& membrane : plan.facts.stages.front().models->membranes) {
+  for (const MembraneFacts& membrane : plan.facts.stages.front().models->membranes)
     if (membrane.first) report.first_stretches.push_back(*membrane.first);
-  }
-  for (const scene::CellType& type : plan.scene->cell_types) {
+  for (const scene::CellType& type : plan.scene->cell_types)
     if (const std::string doubt = shape::doubt_of_rest(type); !doubt.empty()) report.warnings.push_back(doubt);
-  }
   report.dimensionless = dimensionless_numbers(plan, report.wells);
   report.conversions = conversion_table(plan);
   report.packings = packed_cells(*plan.scene);

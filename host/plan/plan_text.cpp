@@ -51,9 +51,8 @@ void write_wells(std::ostringstream& out, const std::vector<InteractionWell>& we
 void write_choice(std::ostringstream& out, const NumericsChoice& choice, bool knows_developed) {
   out << "\nNumerics, chosen for an error of " << formatted(100 * choice.target) << " % of the "
       << (choice.steady ? "steady state" : "motion") << "\n";
-  for (const ChosenValue& chosen : choice.values) {
+  for (const ChosenValue& chosen : choice.values)
     out << "  " << padded(chosen.pointer, 28) << padded(chosen.value.dump(), 16) << chosen.why << "\n";
-  }
   out << "  expected error " << formatted(100 * choice.expected.total(), "%.2g") << " %: lattice "
       << formatted(100 * choice.expected.resolution, "%.2g") << " %, relaxed density "
       << formatted(100 * choice.expected.inertia, "%.2g") << " %"

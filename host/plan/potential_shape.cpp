@@ -51,20 +51,10 @@ Curve evaluate(const core::Potential& potential, std::vector<double> distance) {
 std::vector<double> spread(double from, double first, double to, int count) {
   std::vector<double> values(static_cast<std::size_t>(count));
   const double ratio = (to - from) / first;
-  for (int i = 0; i < count; ++i) {
-    values[i] = from + first * std::pow(ratio, i / (count - 1.0));
-  }
+  for (int i = 0; i < count; ++i) values[i] = from + first * std::pow(ratio, i / (count - 1.0));
   values.back() = to;
   return values;
 }
-
-}  // namespace
-
-double force_at(const core::Potential& potential, double distance) {
-  return evaluate(potential, {distance}).force.front();
-}
-
-namespace {
 
 /// Where the force turns from repulsion, at `low`, to attraction, at `high`.
 double turning_point(const core::Potential& potential, double low, double high) {
@@ -81,9 +71,8 @@ double turning_point(const core::Potential& potential, double low, double high) 
 double work(const Curve& curve) {
   if (!curve.energy.empty()) return -curve.energy.front();
   double sum = 0;
-  for (std::size_t i = 1; i < curve.distance.size(); ++i) {
+  for (std::size_t i = 1; i < curve.distance.size(); ++i)
     sum -= (curve.force[i] + curve.force[i - 1]) / 2 * (curve.distance[i] - curve.distance[i - 1]);
-  }
   return sum;
 }
 
@@ -94,6 +83,10 @@ double largest(const std::vector<double>& values) {
 }
 
 }  // namespace
+
+double force_at(const core::Potential& potential, double distance) {
+  return evaluate(potential, {distance}).force.front();
+}
 
 PotentialShape find_shape(const core::Potential& potential) {
   constexpr int samples = 2000;
@@ -116,9 +109,8 @@ PotentialShape find_shape(const core::Potential& potential) {
   if (curve.force.front() < 0) consider(0);
   for (std::size_t i = 1; i < curve.force.size(); ++i) {
     // A narrow well may have died away to nothing already where the next sample lies.
-    if (curve.force[i - 1] > 0 && !(curve.force[i] > 0)) {
+    if (curve.force[i - 1] > 0 && !(curve.force[i] > 0))
       consider(turning_point(potential, curve.distance[i - 1], curve.distance[i]));
-    }
   }
   if (shape.well) {
     shape.stiffness = bottom_stiffness;

@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "constants.hpp"
 #include "core/fluid/openings/section.hpp"
-#include "core/geometry/border_of_region.hpp"
+#include "core/geometry/border.hpp"
 #include "core/geometry/parts.hpp"
 #include "placed_cells.hpp"
 #include "scene/driving_flow.hpp"
@@ -206,13 +206,12 @@ core::BasicSolverSetup<D> make_solver_setup(const Plan& plan, int index, const L
       const auto& [values, steps] = stage.stage->strengths[i];
       strength = {values, steps, values.size() > 1 ? *stage.stage->duration / stage.units.time : 0};
     }
-    if (interaction.with_wall()) {
+    if (interaction.with_wall())
       setup.wall_interactions.push_back({interaction.between[0], potential, strength});
-    } else if (interaction.with_self()) {
+    else if (interaction.with_self())
       setup.self_interactions.push_back({interaction.between[0], potential, strength});
-    } else {
+    else
       setup.interactions.push_back({interaction.between, potential, strength});
-    }
   }
   return setup;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
-#include <set>
 
 #include "base/installation.hpp"
 #include "base/synonyms.hpp"
@@ -125,13 +124,11 @@ std::vector<fs::path> plugin_search_path(const std::vector<fs::path>& given, con
     require_folder(folder, "plugin_dirs of the scene");
     path.push_back(folder);
   }
-  for (const auto& folder : environment_folders()) {
+  for (const auto& folder : environment_folders())
     if (is_folder(folder)) path.push_back(folder);
-  }
   if (const fs::path folder = user_plugin_folder(); !folder.empty() && is_folder(folder)) path.push_back(folder);
-  for (const auto& folder : installed_folders()) {
+  for (const auto& folder : installed_folders())
     if (is_folder(folder)) path.push_back(folder);
-  }
   return path;
 }
 
@@ -162,9 +159,8 @@ Catalog::Catalog(const std::vector<fs::path>& folders) : folders_(folders) {
 void Catalog::refuse_duplicates() {
   std::map<std::string, std::vector<fs::path>> files;
   for (const auto& manifest : manifests_) files[manifest.id].push_back(manifest.file);
-  for (const auto& refused : refused_) {
+  for (const auto& refused : refused_)
     if (!refused.id.empty()) files[refused.id].push_back(refused.file);
-  }
   std::vector<Manifest> unique;
   for (auto& manifest : manifests_) {
     const auto& claimants = files[manifest.id];
@@ -202,9 +198,8 @@ const Manifest& Catalog::find(ModelKind kind, const std::string& id, const Place
     // Each of two manifests with one id was refused for the other's sake: naming both once is enough.
     if (refused.id == id && reasons.find(refused.reason) == std::string::npos) reasons += "\n" + refused.reason;
   }
-  if (!reasons.empty()) {
+  if (!reasons.empty())
     throw Error(Cause::plugin_refused, place, "the plugin " + in_quotes(id) + " was refused:" + reasons);
-  }
   throw_unknown(kind, id, place);
 }
 
@@ -215,9 +210,8 @@ void Catalog::throw_unknown(ModelKind kind, const std::string& id, const Place& 
   if (!scenes_may_bring_plugins())
     problem += "\n  not searched: what a scene names in plugin_dirs (ROULEAU_SCENE_PLUGINS is no)";
   std::vector<fs::path> nameless;
-  for (const auto& refused : refused_) {
+  for (const auto& refused : refused_)
     if (refused.id.empty()) nameless.push_back(refused.file);
-  }
   if (!nameless.empty()) problem += "\n  could not be read:" + names_of(nameless);
   throw Error(Cause::bad_input, place, problem);
 }
@@ -232,9 +226,8 @@ void Catalog::set_lock(Lock lock) {
 
 std::vector<std::string> Catalog::ids(ModelKind kind, std::optional<int> dimension) const {
   std::vector<std::string> names;
-  for (const auto& manifest : manifests_) {
+  for (const auto& manifest : manifests_)
     if (manifest.kind == kind && (!dimension || manifest.works_in(*dimension))) names.push_back(manifest.id);
-  }
   std::sort(names.begin(), names.end());
   return names;
 }

@@ -9,7 +9,6 @@
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
-#include <vector>
 
 namespace rouleau::plugin {
 
@@ -105,16 +104,13 @@ std::string reason_not_loadable(const std::filesystem::path& path, const std::st
     if (!file.holds(0, sizeof(Header))) return "is no shared library (not an ELF file)";
     const Header header = file.read<Header>(0, 1)[0];
     if (std::string reason = foreign_part(header); !reason.empty()) return reason;
-    if (header.e_phentsize != sizeof(Segment) || header.e_shentsize != sizeof(Section)) {
+    if (header.e_phentsize != sizeof(Segment) || header.e_shentsize != sizeof(Section))
       return "has a damaged ELF header";
-    }
-    for (const Segment& segment : file.read<Segment>(header.e_phoff, header.e_phnum)) {
+    for (const Segment& segment : file.read<Segment>(header.e_phoff, header.e_phnum))
       if (segment.p_type == PT_LOAD && !file.holds(segment.p_offset, segment.p_filesz)) return "is cut short";
-    }
     const auto symbols = exported(file, file.read<Section>(header.e_shoff, header.e_shnum));
-    if (std::find(symbols.begin(), symbols.end(), symbol) == symbols.end()) {
+    if (std::find(symbols.begin(), symbols.end(), symbol) == symbols.end())
       return "does not export the function " + symbol;
-    }
   } catch (const Damaged& damage) {
     return damage.what();
   }

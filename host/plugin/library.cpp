@@ -3,12 +3,12 @@
 #include <vector>
 
 #include "base/synonyms.hpp"
-#include "base/text.hpp"
 
 // With the standard's file paths Boost.DLL is header-only and needs no other Boost library.
 #define BOOST_DLL_USE_STD_FS
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <link.h>
 #include <sys/mman.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -16,15 +16,14 @@
 #include <atomic>
 #include <boost/dll/shared_library.hpp>
 #include <cerrno>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <map>
 #include <mutex>
-#include <string>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/input_file.hpp"
-#include "base/own_pages.hpp"
 #include "exported_symbols.hpp"
 
 namespace rouleau::plugin {
@@ -36,6 +35,51 @@ namespace fs = std::filesystem;
 [[noreturn]] void refuse(const Manifest& manifest, const std::string& problem, const Remedy& remedy = {}) {
   throw Error(Cause::plugin_refused, Place{manifest.file.string()},
               "the library " + manifest.library.string() + ' ' + problem, remedy);
+}
+
+/// Whole pages, with what lies between a library's variables, where an AddressSanitizer allows no reading.
+__attribute__((no_sanitize("address"))) void copy_words(const void* from, void* to, std::size_t bytes) {
+  const auto* const source = static_cast<const volatile std::uint64_t*>(from);  // volatile: or it becomes a memcpy
+  auto* const copy = static_cast<std::uint64_t*>(to);
+  for (std::size_t i = 0; i < bytes / sizeof(std::uint64_t); ++i) copy[i] = source[i];
+}
+
+void own(std::uintptr_t begin, std::uintptr_t end, int protection) {
+  void* const copy = ::mmap(nullptr, end - begin, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (copy == MAP_FAILED) return;
+  auto* const place = reinterpret_cast<void*>(begin);
+  copy_words(place, copy, end - begin);
+  if (::mprotect(copy, end - begin, protection) != 0 ||
+      ::mremap(copy, end - begin, end - begin, MREMAP_MAYMOVE | MREMAP_FIXED, place) == MAP_FAILED)
+    ::munmap(copy, end - begin);
+}
+
+int own_if_meant(dl_phdr_info* info, std::size_t, void* wanted) {
+  if (info->dlpi_addr != static_cast<const link_map*>(wanted)->l_addr) return 0;
+  const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
+  const auto down = [&](std::uintptr_t address) { return address / page * page; };
+  for (int i = 0; i < info->dlpi_phnum; ++i) {
+    const auto& part = info->dlpi_phdr[i];
+    if (part.p_type != PT_LOAD || part.p_memsz == 0 || (part.p_flags & PF_R) == 0) continue;
+    const std::uintptr_t begin = info->dlpi_addr + part.p_vaddr;
+    const int protection =
+        PROT_READ | ((part.p_flags & PF_W) != 0 ? PROT_WRITE : 0) | ((part.p_flags & PF_X) != 0 ? PROT_EXEC : 0);
+    own(down(begin), down(begin + part.p_memsz + page - 1), protection);
+  }
+  for (int i = 0; i < info->dlpi_phnum; ++i) {
+    const auto& part = info->dlpi_phdr[i];  // what only the loader has written to
+    const std::uintptr_t begin = down(info->dlpi_addr + part.p_vaddr);
+    const std::uintptr_t end = down(info->dlpi_addr + part.p_vaddr + part.p_memsz);
+    if (part.p_type == PT_GNU_RELRO && end > begin) ::mprotect(reinterpret_cast<void*>(begin), end - begin, PROT_READ);
+  }
+  return 1;
+}
+
+/// Puts copies in the places of a loaded library's pages, so that it stays what it is when somebody writes to its file
+/// or cuts it short. `handle`: as dlopen gave it. Where the system refuses, pages stay as they are.
+void own_pages(void* handle) {
+  link_map* map = nullptr;
+  if (::dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0 && map != nullptr) dl_iterate_phdr(&own_if_meant, map);
 }
 
 /// What the dynamic loader says of a file that is not there.
@@ -58,9 +102,8 @@ fs::path library_file(const Manifest& manifest) {
                : "does not exist; it must lie in the folder of its manifest\n  " + loader_words(manifest.library));
   }
   if (error) refuse(manifest, "cannot be opened: " + error.message());
-  if (library.parent_path() != folder) {
+  if (library.parent_path() != folder)
     refuse(manifest, "leads out of the folder of its manifest, to " + library.string());
-  }
   if (!fs::is_regular_file(library, error)) refuse(manifest, "is not a regular file");
   return library;
 }
@@ -229,9 +272,8 @@ std::string model_fault(const rouleau_model& model, const Manifest& manifest) {
     return "has version " + (model.version == nullptr ? "(none)" : std::string(model.version)) + " of " +
            in_quotes(manifest.id) + ", its manifest is for version " + manifest.version;
   }
-  if (model.create == nullptr || model.destroy == nullptr) {
+  if (model.create == nullptr || model.destroy == nullptr)
     return "has no create or no destroy function in its model " + in_quotes(manifest.id);
-  }
   return table_fault(model);
 }
 
@@ -251,9 +293,8 @@ fs::path checked_library(const Manifest& manifest) {
              {manifest.locked->renewal});
     }
   }
-  if (const std::string reason = reason_not_loadable(file, ROULEAU_OPEN_SYMBOL); !reason.empty()) {
+  if (const std::string reason = reason_not_loadable(file, ROULEAU_OPEN_SYMBOL); !reason.empty())
     refuse(manifest, reason);
-  }
   return file;
 }
 
@@ -300,17 +341,15 @@ void require_unchanged(const ProcessState& before, const Manifest& manifest, con
 }
 
 FoundModel find_model(const rouleau_plugin& plugin, const Manifest& manifest) {
-  if (plugin.struct_size < smallest_plugin) {
+  if (plugin.struct_size < smallest_plugin)
     return {nullptr, size_fault("rouleau_plugin", plugin.struct_size, smallest_plugin)};
-  }
   if (plugin.models == nullptr) return {nullptr, "holds no list of models"};
   std::vector<std::string> ids;
   for (const rouleau_model* const* entry = plugin.models; *entry != nullptr; ++entry) {
     const rouleau_model& model = **entry;
     // A broken model beside the wanted one is no reason to refuse that, as long as its name can be read.
-    if (model.struct_size < smallest_named_model) {
+    if (model.struct_size < smallest_named_model)
       return {nullptr, size_fault("rouleau_model", model.struct_size, smallest_model)};
-    }
     if (model.id == nullptr) return {nullptr, "holds a model without an id"};
     if (model.id == manifest.id) {
       std::string fault = model_fault(model, manifest);

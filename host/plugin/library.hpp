@@ -5,7 +5,6 @@
 #include <rouleau/plugin.h>
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <type_traits>
 
 #include "base/error.hpp"

@@ -4,7 +4,6 @@
 #include <set>
 #include <tuple>
 
-#include "base/error.hpp"
 #include "base/input_file.hpp"
 #include "base/text.hpp"
 #include "json/document.hpp"

@@ -1,7 +1,6 @@
 #include "manifest.hpp"
 
 #include <algorithm>
-#include <array>
 
 namespace rouleau::plugin {
 
@@ -62,9 +61,8 @@ Manifest Manifest::in(int dimension) const {
 }
 
 std::optional<std::size_t> Manifest::parameter_with(Role role) const {
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
+  for (std::size_t i = 0; i < parameters.size(); ++i)
     if (parameters[i].role == role) return i;
-  }
   return std::nullopt;
 }
 

@@ -27,11 +27,9 @@ bool holds(const std::vector<std::string>& names, const std::string& name) {
 Parameter read_choice(const json::Document& document, const std::string& at, const Json& entry) {
   Parameter parameter;
   parameter.choices = entry["choices"].get<std::vector<std::string>>();
-  for (const char* key : {"unit", "minimum", "exclusiveMinimum", "maximum", "exclusiveMaximum", "usual"}) {
-    if (entry.contains(key)) {
+  for (const char* key : {"unit", "minimum", "exclusiveMinimum", "maximum", "exclusiveMaximum", "usual"})
+    if (entry.contains(key))
       refuse(document, at + '/' + key, std::string("a parameter with \"choices\" has no \"") + key + '"');
-    }
-  }
   if (!entry.contains("default")) return parameter;
   const Json& word = entry["default"];
   const auto chosen = word.is_string()
@@ -49,10 +47,9 @@ Parameter read_choice(const json::Document& document, const std::string& at, con
 void check_limits(const json::Document& document, const std::string& at, const Parameter& parameter) {
   const auto check = [&](const std::optional<double>& low, const std::optional<double>& high, bool open,
                          const char* low_name, const char* high_name) {
-    if (low && high && (*low > *high || (open && *low == *high))) {
+    if (low && high && (*low > *high || (open && *low == *high)))
       refuse(document, at + '/' + high_name,
              std::string("no value can satisfy both \"") + low_name + "\" and \"" + high_name + '"');
-    }
   };
   check(parameter.minimum, parameter.maximum, false, "minimum", "maximum");
   check(parameter.minimum, parameter.exclusive_maximum, true, "minimum", "exclusiveMaximum");
@@ -70,9 +67,8 @@ void check_usual(const json::Document& document, const std::string& at, const Pa
            (parameter.exclusive_minimum && value < *parameter.exclusive_minimum) ||
            (parameter.exclusive_maximum && value > *parameter.exclusive_maximum);
   };
-  if (outside(low) || outside(high)) {
+  if (outside(low) || outside(high))
     refuse(document, at + "/usual", "the usual range must lie within the limits of the parameter");
-  }
 }
 
 Parameter read_number(const json::Document& document, const std::string& at, const Json& entry,
@@ -97,9 +93,8 @@ Parameter read_number(const json::Document& document, const std::string& at, con
   number("exclusiveMinimum", parameter.exclusive_minimum);
   number("maximum", parameter.maximum);
   number("exclusiveMaximum", parameter.exclusive_maximum);
-  if (entry.contains("usual")) {
+  if (entry.contains("usual"))
     parameter.usual = {entry["usual"][0].get<double>() * scale, entry["usual"][1].get<double>() * scale};
-  }
   check_limits(document, at, parameter);
   check_usual(document, at, parameter);
   if (entry.contains("default")) {
@@ -110,9 +105,8 @@ Parameter read_number(const json::Document& document, const std::string& at, con
     }
     number("default", parameter.default_value);
     const std::string wanted = violated_limit(*parameter.default_value, parameter, units);
-    if (!wanted.empty()) {
+    if (!wanted.empty())
       refuse(document, at + "/default", "the default is " + json::shown(entry["default"]) + "; it must be " + wanted);
-    }
   }
   return parameter;
 }
@@ -142,9 +136,8 @@ void check_element(const json::Document& document, const Manifest& manifest, con
   const bool surface = manifest.dimension() == 3;
   std::optional<MembraneElement> element;
   for (const char* name : {"tension", "stress_1", "stress_2", "shear_viscosity", "area_viscosity", "moment",
-                           "area_tension", "pressure", "perimeter_tension", "surface_tension"}) {
+                           "area_tension", "pressure", "perimeter_tension", "surface_tension"})
     if (manifest.gives_output(name)) element = element_of(name);
-  }
   if (!element) {
     refuse(document, at + "/gives",
            surface
@@ -165,6 +158,32 @@ void check_element(const json::Document& document, const Manifest& manifest, con
   check("needs", manifest.needs);
 }
 
+void check_reference_numbers(const json::Document& document, const Manifest& manifest, const std::string& place) {
+  std::vector<std::string> parameters;
+  for (const Parameter& parameter : manifest.parameters) parameters.push_back(parameter.name);
+  const auto check = [&](const std::string& at, const Json& entry, const char* key,
+                         const std::vector<std::string>& known, const char* what) {
+    const Json members = entry.value(key, Json::object());
+    for (const auto& [name, value] : members.items()) {
+      if (name.starts_with("x-") || holds(known, name)) continue;
+      throw Error(Cause::plugin_refused, document.key_place(json::child_pointer(at + '/' + key, name)),
+                  in_quotes(name) + " is not among this model's " + what + did_you_mean(name, known) + "\n  " + what +
+                      ": " + listed(known));
+    }
+  };
+  std::vector<std::string> inputs = manifest.needs, outputs = manifest.gives;
+  for (const StateVariable& variable : manifest.state) {
+    inputs.push_back(variable.name);
+    outputs.push_back(variable.name);
+  }
+  for (std::size_t i = 0; i < manifest.checks.size(); ++i) {
+    const std::string at = place + "/checks/" + std::to_string(i);
+    check(at, manifest.checks[i], "parameters", parameters, "parameters");
+    check(at, manifest.checks[i], "inputs", inputs, manifest.state.empty() ? "\"needs\"" : "\"needs\" and \"state\"");
+    check(at, manifest.checks[i], "outputs", outputs, manifest.state.empty() ? "\"gives\"" : "\"gives\" and \"state\"");
+  }
+}
+
 }  // namespace
 
 std::vector<Parameter> read_parameters(const json::Document& document, const units::Units& units) {
@@ -178,9 +197,8 @@ std::vector<Parameter> read_parameters(const json::Document& document, const uni
     parameter.name = list[i]["name"];
     parameter.role = role_named(list[i].value("role", std::string()));
     parameter.doc = list[i].value("doc", std::string());
-    if (!seen.insert(parameter.name).second) {
+    if (!seen.insert(parameter.name).second)
       refuse(document, at + "/name", "two parameters are called \"" + parameter.name + '"');
-    }
     parameters.push_back(std::move(parameter));
   }
   return parameters;
@@ -195,9 +213,8 @@ std::vector<StateVariable> read_state(const json::Document& document, const unit
     StateVariable variable;
     variable.name = list[i]["name"];
     variable.unit = list[i]["unit"];
-    if (!seen.insert(variable.name).second) {
+    if (!seen.insert(variable.name).second)
       refuse(document, at + "/name", "two state variables are called \"" + variable.name + '"');
-    }
     try {
       variable.dimension = units.dimension(variable.unit);
       variable.initial = list[i].value("initial", 0.0) * units.scale(variable.unit);
@@ -233,9 +250,8 @@ void check_roles(const json::Document& document, const Manifest& manifest) {
                  " cannot be the model's " + role.name + ", which is in " + role.unit +
                  "; give it such a unit, or leave \"role\" out");
     }
-    if (!seen.insert(*parameter.role).second) {
+    if (!seen.insert(*parameter.role).second)
       refuse(document, at, "two parameters have the role " + name + "; leave it to the one that the model has it by");
-    }
   }
 }
 
@@ -245,9 +261,8 @@ void check_dimensions(const json::Document& document, const Manifest& manifest) 
            std::string("a ") + to_string(manifest.kind) +
                " model does not know the lattice; leave \"lattices\" to collision operators");
   }
-  if (manifest.kind == ModelKind::collision && document.root().contains("dimensions")) {
+  if (manifest.kind == ModelKind::collision && document.root().contains("dimensions"))
     refuse(document, "/dimensions", "a collision operator names its lattices; leave \"dimensions\" to other models");
-  }
   if (manifest.kind == ModelKind::membrane && manifest.works_in(3) && !manifest.state.empty()) {
     refuse(document, "/state/0",
            "a membrane law in three dimensions cannot remember " + in_quotes(manifest.state[0].name) +
@@ -273,52 +288,18 @@ void check_dimensions(const json::Document& document, const Manifest& manifest) 
   }
 }
 
-namespace {
-
-void check_reference_numbers(const json::Document& document, const Manifest& manifest, const std::string& place) {
-  std::vector<std::string> parameters;
-  for (const Parameter& parameter : manifest.parameters) parameters.push_back(parameter.name);
-  const auto check = [&](const std::string& at, const Json& entry, const char* key,
-                         const std::vector<std::string>& known, const char* what) {
-    const Json members = entry.value(key, Json::object());
-    for (const auto& [name, value] : members.items()) {
-      if (name.starts_with("x-") || holds(known, name)) continue;
-      throw Error(Cause::plugin_refused, document.key_place(json::child_pointer(at + '/' + key, name)),
-                  in_quotes(name) + " is not among this model's " + what + did_you_mean(name, known) + "\n  " + what +
-                      ": " + listed(known));
-    }
-  };
-  std::vector<std::string> inputs = manifest.needs, outputs = manifest.gives;
-  for (const StateVariable& variable : manifest.state) {
-    inputs.push_back(variable.name);
-    outputs.push_back(variable.name);
-  }
-  for (std::size_t i = 0; i < manifest.checks.size(); ++i) {
-    const std::string at = place + "/checks/" + std::to_string(i);
-    check(at, manifest.checks[i], "parameters", parameters, "parameters");
-    check(at, manifest.checks[i], "inputs", inputs, manifest.state.empty() ? "\"needs\"" : "\"needs\" and \"state\"");
-    check(at, manifest.checks[i], "outputs", outputs, manifest.state.empty() ? "\"gives\"" : "\"gives\" and \"state\"");
-  }
-}
-
-}  // namespace
-
 void check_quantities(const json::Document& document, const Manifest& manifest, const std::string& at) {
   check_names(document, at, "needs", manifest.needs, inputs_of(manifest.kind, manifest.dimension()), manifest);
   check_names(document, at, "gives", manifest.gives, outputs_of(manifest.kind, manifest.dimension()), manifest);
   check_reference_numbers(document, manifest, at);
-  switch (manifest.kind) {
-    case ModelKind::collision:
-      if (!manifest.needs_input("populations")) refuse(document, "/needs", "a collision model needs \"populations\"");
-      if (!manifest.gives_output("populations")) refuse(document, "/gives", "a collision model gives \"populations\"");
-      break;
-    case ModelKind::membrane:
-      check_element(document, manifest, at);
-      break;
-    case ModelKind::interaction:
-      if (!manifest.gives_output("force")) refuse(document, "/gives", "an interaction model must give \"force\"");
-      break;
-  }
+  const bool collides = manifest.kind == ModelKind::collision;
+  if (collides && !manifest.needs_input("populations"))
+    refuse(document, "/needs", "a collision model needs \"populations\"");
+  if (collides && !manifest.gives_output("populations"))
+    refuse(document, "/gives", "a collision model gives \"populations\"");
+  if (manifest.kind == ModelKind::membrane) check_element(document, manifest, at);
+  if (manifest.kind == ModelKind::interaction && !manifest.gives_output("force"))
+    refuse(document, "/gives", "an interaction model must give \"force\"");
 }
 
 void check_parameter_values(const json::Document& document, const Manifest& manifest, const char* key,
@@ -336,14 +317,12 @@ void check_parameter_values(const json::Document& document, const Manifest& mani
     }
     const Parameter& parameter = manifest.parameters[found - names.begin()];
     if (!parameter.choices.empty()) {
-      if (!value.is_string() || !holds(parameter.choices, value.get<std::string>())) {
+      if (!value.is_string() || !holds(parameter.choices, value.get<std::string>()))
         refuse(document, at, json::shown(value) + " is none of the choices: " + listed(parameter.choices));
-      }
       continue;
     }
-    if (!value.is_number()) {
+    if (!value.is_number())
       refuse(document, at, json::shown(value) + " must be a plain number, in the unit of " + name);
-    }
     const std::string wanted = violated_limit(value.get<double>() * units.scale(parameter.unit), parameter, units);
     if (!wanted.empty()) refuse(document, at, name + " can never be " + json::shown(value) + ": it must be " + wanted);
   }

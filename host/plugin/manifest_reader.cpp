@@ -1,15 +1,10 @@
 #include "manifest_reader.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cmath>
-#include <cstring>
-#include <limits>
 #include <set>
 
 #include "base/error.hpp"
 #include "base/input_file.hpp"
-#include "json/document.hpp"
 #include "json/schema.hpp"
 #include "manifest_fields.hpp"
 #include "trust.hpp"
@@ -31,9 +26,8 @@ std::vector<std::string> words_of(const Json& root, const char* key) {
 Json without_own_keys(const Json& value) {
   if (!value.is_object()) return value;
   Json kept = Json::object();
-  for (const auto& [key, member] : value.items()) {
+  for (const auto& [key, member] : value.items())
     if (!key.starts_with("x-")) kept[key] = member;
-  }
   return kept;
 }
 
@@ -75,23 +69,21 @@ class Search {
     for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
       std::error_code status_error;
       const fs::file_status status = entry->status(status_error);
-      if (fs::is_directory(status)) {
+      if (fs::is_directory(status))
         folders.push_back(entry->path());
-      } else if (entry->path().extension() == ".json") {
+      else if (entry->path().extension() == ".json")
         if (fs::is_regular_file(status))
           files.push_back(entry->path());
         else
           refuse(entry->path(), status_error ? status_error.message() : "not a regular file");
-      } else if (entry->is_symlink() && status_error && status_error != std::errc::no_such_file_or_directory) {
+      else if (entry->is_symlink() && status_error && status_error != std::errc::no_such_file_or_directory)
         refuse(entry->path(), status_error.message());  // a link to a folder that cannot be followed
-      }
     }
     if (error) refuse(path, error.message());
     std::sort(files.begin(), files.end());
     std::sort(folders.begin(), folders.end());
-    for (const auto& file : files) {
+    for (const auto& file : files)
       if (is_new(file)) found.files.push_back({file, open});
-    }
     for (const auto& child : folders) folder(child, open);
   }
 

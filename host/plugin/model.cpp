@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "core/model/lattice_setup.hpp"
+#include "core/model/compiled_in.hpp"
 #include "library.hpp"
 
 namespace rouleau::plugin {
@@ -59,9 +59,8 @@ ModelRefused::ModelRefused(const Manifest& manifest, const std::string& reason)
 
 ModelInstance::ModelInstance(const Manifest& manifest, const std::vector<double>& values, const ModelSetting& setting)
     : manifest_(&manifest), model_(&open_model(manifest)), self_(nullptr, Destroy{manifest.id, model_->destroy}) {
-  for (const StateVariable& variable : manifest.state) {
+  for (const StateVariable& variable : manifest.state)
     initial_state_.push_back(setting.units.to_lattice(variable.initial, variable.dimension));
-  }
   const ModelSetup setup(manifest, values, setting);
   std::array<char, 1024> message{};
   void* self = nullptr;
@@ -83,9 +82,8 @@ ModelInstance::ModelInstance(const Manifest& manifest, const std::vector<double>
 }
 
 ModelSetup::ModelSetup(const Manifest& manifest, const std::vector<double>& values, const ModelSetting& setting) {
-  if (values.size() != manifest.parameters.size()) {
+  if (values.size() != manifest.parameters.size())
     throw std::logic_error("a model needs one value for each parameter of its manifest");
-  }
   for (const Parameter& parameter : manifest.parameters) names_.push_back(parameter.name.c_str());
   values_ = lattice_values(manifest, values, setting.units);
   setup_ = core::lattice_setup(setting.dimension, setting.relaxation_rate, setting.inertia);

@@ -60,9 +60,8 @@ class Resolver {
   }
 
   [[nodiscard]] bool is_faulty(const std::string& pointer) const {
-    for (std::size_t i = 0; i < faults_.size(); ++i) {
+    for (std::size_t i = 0; i < faults_.size(); ++i)
       if (faults_[i].place().pointer == pointer) return true;
-    }
     return false;
   }
   [[nodiscard]] bool is_member_faulty() const {
@@ -229,18 +228,14 @@ std::string value_text(double si, const Parameter& parameter, const units::Units
 
 std::string violated_limit(double value, const Parameter& parameter, const units::Units& units) {
   const auto text = [&](const char* words, double limit) { return words + value_text(limit, parameter, units); };
-  if (const auto limit = parameter.minimum; limit && value < *limit && !same_quantity(value, *limit)) {
+  if (const auto limit = parameter.minimum; limit && value < *limit && !same_quantity(value, *limit))
     return text("at least ", *limit);
-  }
-  if (const auto limit = parameter.exclusive_minimum; limit && (value <= *limit || same_quantity(value, *limit))) {
+  if (const auto limit = parameter.exclusive_minimum; limit && (value <= *limit || same_quantity(value, *limit)))
     return text("above ", *limit);
-  }
-  if (const auto limit = parameter.maximum; limit && value > *limit && !same_quantity(value, *limit)) {
+  if (const auto limit = parameter.maximum; limit && value > *limit && !same_quantity(value, *limit))
     return text("at most ", *limit);
-  }
-  if (const auto limit = parameter.exclusive_maximum; limit && (value >= *limit || same_quantity(value, *limit))) {
+  if (const auto limit = parameter.exclusive_maximum; limit && (value >= *limit || same_quantity(value, *limit)))
     return text("below ", *limit);
-  }
   return {};
 }
 

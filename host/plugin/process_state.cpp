@@ -92,9 +92,8 @@ ProcessState::~ProcessState() {
 
 std::vector<std::string> ProcessState::restore() const {
   std::vector<std::string> changed;
-  if (folder_ >= 0 && working_directory_is_another_than(folder_)) {
+  if (folder_ >= 0 && working_directory_is_another_than(folder_))
     changed.emplace_back(::fchdir(folder_) == 0 ? "the working directory" : "the working directory, for good");
-  }
   if (const auto mask = file_mode_mask(); mask && mask_ && *mask != *mask_) {
     changed.emplace_back("the file mode mask");
     ::umask(*mask_);

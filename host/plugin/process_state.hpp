@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <exception>
 #include <locale>
-#include <new>
 #include <optional>
 #include <string>
 #include <vector>

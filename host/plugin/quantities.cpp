@@ -47,9 +47,8 @@ std::optional<MembraneElement> element_of(const std::string& name) {
       {MembraneElement::cell,
        {"area", "rest_area", "perimeter", "rest_perimeter", "pressure", "perimeter_tension", "volume", "rest_volume",
         "surface_area", "rest_surface_area", "surface_tension"}}};
-  for (const auto& [element, own] : names) {
+  for (const auto& [element, own] : names)
     if (std::find(own.begin(), own.end(), name) != own.end()) return element;
-  }
   return std::nullopt;
 }
 
@@ -76,9 +75,8 @@ std::string unit_of(const Manifest& manifest, const std::string& name) {
   const bool of_cell = manifest.gives_output("pressure") || manifest.gives_output("perimeter_tension") ||
                        manifest.gives_output("surface_tension");
   if (name == "energy" && of_cell) return manifest.dimension() == 2 ? "J/m" : "J";
-  for (const auto& [unit, own] : names) {
+  for (const auto& [unit, own] : names)
     if (std::find(own.begin(), own.end(), name) != own.end()) return unit;
-  }
   return "";
 }
 

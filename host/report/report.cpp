@@ -6,7 +6,6 @@
 #include <string_view>
 #include <utility>
 
-#include "base/text.hpp"
 #include "files/file.hpp"
 #include "files/run_directory.hpp"
 #include "json/document.hpp"

@@ -21,7 +21,6 @@
 #include "report_cells.hpp"
 #include "report_fields.hpp"
 #include "report_outlines.hpp"
-#include "report_surfaces.hpp"
 
 namespace rouleau::report {
 
@@ -204,9 +203,7 @@ Json damage_of(const std::filesystem::path& directory, const Json& summary) {
   Json damage = Json::array();
   if (summary.contains("files")) {
     const auto shown_here = [](const std::string& name) { return name.ends_with(".csv") || name == "scene.json"; };
-    for (const std::string& difference : files::verify(directory, shown_here).differences) {
-      damage.push_back(difference);
-    }
+    for (const std::string& difference : files::verify(directory, shown_here).differences) damage.push_back(difference);
   }
   return damage;
 }
@@ -288,11 +285,10 @@ Json report_data(const std::filesystem::path& directory) {
   Json damage = damage_of(directory, data["summary"]);
   // A run that goes on, or was killed, may lack the last rows of a file; one that has ended may not.
   const auto take = [&](const char* file, std::size_t has) {
-    if (ended && has < series.rows()) {
+    if (ended && has < series.rows())
       damage.push_back(std::string(file) + " holds " + std::to_string(has) + " of the " +
                        std::to_string(series.rows()) + " outputs of series.csv: it was cut short; bring the whole " +
                        "file back, or run the scene again. What is shown here ends where it ends.");
-    }
     outputs = std::min(outputs, has);
   };
   if (rows) take("cells.csv", rows->outputs());

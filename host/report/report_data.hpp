@@ -27,7 +27,7 @@ bool has_run(const std::filesystem::path& directory);
 ///             not there; beside what has a chart speed_um_per_s, of the centroid
 ///   domain    {size_um, periodic} along each axis; absent without frames
 ///   outlines  outline_data() of the shown outputs (report_outlines.hpp), or null
-///   surfaces  surface_data() of them (report_surfaces.hpp) in space, or null
+///   surfaces  surface_data() of them (report_outlines.hpp) in space, or null
 ///   fields    field_data() of the shown outputs (report_fields.hpp), or null
 /// Undefined numbers are null. Throws Error(bad_input) when the directory is no run's.
 nlohmann::json report_data(const std::filesystem::path& directory);

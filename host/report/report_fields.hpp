@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "files/field_nodes.hpp"

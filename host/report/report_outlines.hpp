@@ -1,8 +1,6 @@
-// Outlines of cells and walls as report.html carries them: integers relative to each cell's origin, in base64.
+// Outlines and surfaces of cells, and walls, as report.html carries them: integers relative to origins, in base64.
 #pragma once
 
-#include <functional>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -23,35 +21,16 @@ inline constexpr double micro = 1e6;
 nlohmann::json outline_data(const files::FrameReader& reader, const std::vector<std::size_t>& selection,
                             std::size_t stride);
 
-/// Which cells the outputs of a page have, and how many nodes of each.
-class CellLayout {
- public:
-  /// Those of the next output, one node in `stride`. False where a cell has another number of nodes than before.
-  bool add(const observe::OutlineSnapshot& outlines, std::size_t stride = 1);
-  [[nodiscard]] bool empty() const { return nodes_.empty(); }
-  /// cells, first and there, as outline_data has them.
-  void put_into(nlohmann::json& result) const;
+/// {quantum_um, cells, first, there, meshes, mesh, outputs, origin_um, nodes, tension} of
+/// the outputs `selection`, or of so many of them that the page stays small: `outputs` are places in the selection.
+/// cells, first and there are those of outline_data. meshes: triangles of different cells, 32-bit numbers of nodes from
+/// a cell's first; mesh: which of them each cell has. Nodes of an output are 16-bit multiples of the quantum from their
+/// cell's origin; both in base64. tension {scale_N_per_m, values} of int8 for each node, the mean of its triangles over
+/// the scale times 127. Null without surfaces.
+nlohmann::json surface_data(const files::FrameReader& reader, const std::vector<std::size_t>& selection);
 
- private:
-  std::map<int, std::size_t> nodes_;     ///< of each cell
-  std::vector<std::vector<int>> there_;  ///< cells of each output
-};
-
-/// What places within a domain of this size are multiples of, m.
-double quantum_of(const std::vector<double>& size);
 /// Adds a length as a little-endian int16 of quanta; 0 where it is no number.
 void append_place(std::vector<unsigned char>& bytes, double metres, double quantum);
-/// Adds a number as a little-endian int32.
-void append_number(std::vector<unsigned char>& bytes, int number);
-
-/// What all but one tension in a hundred stay below in magnitude, N/m: the ends of cells would hide the rest. outlines:
-/// those of an output.
-using Outlines = std::function<observe::OutlineSnapshot(int output)>;
-double tension_scale(const Outlines& outlines, const std::vector<std::size_t>& selection);
-
-/// Tensions of one node in `stride` of every cell as signed bytes in base64: 127 stands for `scale`.
-std::string tension_bytes(const observe::OutlineSnapshot& outlines, std::size_t stride, double scale);
-
 /// Base64 (RFC 4648) of bytes.
 std::string base64(const std::vector<unsigned char>& bytes);
 

@@ -9,7 +9,6 @@
 
 #include "checkpoint_match.hpp"
 #include "core/solver/in_order.hpp"
-#include "run_state.hpp"
 #include "saved_cells.hpp"
 
 namespace rouleau::run {
@@ -163,13 +162,11 @@ void restore_contacts(const files::CheckpointReader& reader, const Json& saved, 
 /// Writes the arrays, and returns what belongs into the file's /state.
 template <int D, class Cells>
 Json save(CellArrays<D> to, const Cells& m) {
-  for (const auto& [path, values] : arrays(m)) {
-    if (values == &m.largest_step) {
+  for (const auto& [path, values] : arrays(m))
+    if (values == &m.largest_step)
       to.of_cells(path, *values);
-    } else {
+    else
       to.of_nodes(path, *values);
-    }
-  }
   to.of_cells(leakage_array, m.area_leakage);
   Json states = Json::array();
   for (std::size_t k = 0; k < m.state.size(); ++k) {

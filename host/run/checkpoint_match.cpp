@@ -40,9 +40,8 @@ std::string in_short(const Json& value) {
 /// A part of the scene that decides what is written or when a stage ends, and not what a state means.
 bool is_harmless(const std::string& pointer, int stage) {
   for (const char* part :
-       {"/title", "/notes", "/expected", "/output", "/checks", "/at_rest", "/equilibrium", "/plugin_dirs"}) {
+       {"/title", "/notes", "/expected", "/output", "/checks", "/at_rest", "/equilibrium", "/plugin_dirs"})
     if (pointer == part || pointer.starts_with(std::string(part) + "/")) return true;
-  }
   if (pointer.ends_with("/file")) return true;  // its hash stands beside it
   const std::string stages = "/stages/";
   if (!pointer.starts_with(stages)) return false;
@@ -91,9 +90,8 @@ Error refusal(const std::filesystem::path& file, const Json& facts, const std::v
   std::string text = "belongs to a run that differs from this one (step " +
                      std::to_string(facts.at("step").get<long>()) + ", written " +
                      facts.at("written").get<std::string>() + "):";
-  for (const Difference& difference : differences) {
+  for (const Difference& difference : differences)
     text += "\n    " + difference.what + (harmless || difference.harmless ? "" : "   [changes what the state means]");
-  }
   Remedy remedy{"none of this changes what the state means: the run can go on all the same", {Way::accept}};
   if (!harmless)
     remedy = {"go on with what the checkpoint was made with (its scene is " +
@@ -125,6 +123,16 @@ void complete_values(Json& values) {
   if (values.size() < columns && next == values.size()) values = complete;
 }
 
+/// Takes note of how the checkpoint's run differs from this one, or refuses it.
+void accept_differences(Resumption& resumption, const plan::Plan& plan, bool force) {
+  const files::CheckpointReader& checkpoint = *resumption.checkpoint;
+  const Json facts = checkpoint.facts();
+  const std::vector<Difference> found = differences(facts, plan, facts.at("stage"));
+  const bool harmless = std::all_of(found.begin(), found.end(), [](const Difference& d) { return d.harmless; });
+  if (!found.empty() && !(harmless && force)) throw refusal(checkpoint.path(), facts, found, harmless);
+  for (const Difference& difference : found) resumption.accepted.push_back(difference.what);
+}
+
 }  // namespace
 
 Json checkpoint_facts(const plan::Plan& plan, const RunState& state, int threads) {
@@ -148,32 +156,14 @@ std::vector<Difference> differences(const Json& facts, const plan::Plan& plan, i
   std::vector<Difference> found;
   compare_scenes(facts.at("scene"), plan.scene->document->root(), stage, found);
   const std::string program = facts.at("program");
-  if (program != program_version()) {
+  if (program != program_version())
     found.push_back({"program: " + program + " in the checkpoint, " + program_version() + " now", true});
-  }
   const std::string present = name_of(instruction_set()), set = facts.value("instruction_set", present);
-  if (set != present) {
+  if (set != present)
     found.push_back({"instruction set: " + set + " in the checkpoint, " + present + " now: last digits differ", true});
-  }
   compare_plugins(facts.at("plugins"), plan, found);
   return found;
 }
-
-namespace {
-
-/// Takes note of how the checkpoint's run differs from this one, or refuses it.
-void accept_differences(Resumption& resumption, const plan::Plan& plan, bool force) {
-  const files::CheckpointReader& checkpoint = *resumption.checkpoint;
-  const Json facts = checkpoint.facts();
-  const std::vector<Difference> found = differences(facts, plan, facts.at("stage"));
-  const bool harmless = std::all_of(found.begin(), found.end(), [](const Difference& d) { return d.harmless; });
-  if (!found.empty() && !(harmless && force)) {
-    throw refusal(checkpoint.path(), facts, found, harmless);
-  }
-  for (const Difference& difference : found) resumption.accepted.push_back(difference.what);
-}
-
-}  // namespace
 
 Resumption open_checkpoint(const std::filesystem::path& directory, const plan::Plan& plan, bool force) {
   Resumption resumption;

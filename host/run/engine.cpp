@@ -33,9 +33,8 @@ template <int D>
 std::vector<int> Engine<D>::present() const {
   std::vector<int> there;
   const core::GhostCells<D>* const ghosts = solver_->ghosts();
-  for (int c = 0; c < cells_.cell_count(); ++c) {
+  for (int c = 0; c < cells_.cell_count(); ++c)
     if (ghosts != nullptr ? ghosts->owner(c) != core::GhostCells<D>::nobody : cells_.knows(c)) there.push_back(c);
-  }
   return there;
 }
 
@@ -104,11 +103,10 @@ template <int D>
 void Engine<D>::begin(Start start) {
   const bool single = plan_.scene->numerics.precision == scene::Precision::f32;
   auto next = core::make_solver<D>(single, std::move(start.setup), cells_, ranks_, std::move(start.part));
-  if (start.state) {
+  if (start.state)
     next->start(*std::move(start.state));
-  } else {
+  else
     next->start(solver_.get());
-  }
   solver_ = std::move(next);
 }
 

@@ -79,7 +79,4 @@ class Engine {
   std::unique_ptr<core::AnySolver<D>> solver_;  ///< of the present stage
 };
 
-extern template class Engine<2>;
-extern template class Engine<3>;
-
 }  // namespace rouleau::run

@@ -102,9 +102,8 @@ core::Vec<D> Inflow<D>::way_in(const core::BoundingBox<D>& box, shape::RandomNum
 
 template <int D>
 void Inflow<D>::move(core::Cells<D>& cell, const core::Vec<D>& by) {
-  for (int k = 0; k < D; ++k) {
+  for (int k = 0; k < D; ++k)
     for (double& place : cell.position[k]) place += by[k];
-  }
 }
 
 template <int D>
@@ -119,9 +118,8 @@ double Inflow<D>::draw_back(core::Cells<D>& cell) const {
 template <int D>
 bool Inflow<D>::fits(const core::Cells<D>& cell) const {
   const core::BoundingBox<D> box = core::box_of<D>(cell, 0);
-  for (int k = 0; k < D; ++k) {
+  for (int k = 0; k < D; ++k)
     if (domain_.periodic[k] && !(box.most[k] - box.least[k] + kept_apart < domain_.period(k))) return false;
-  }
   if (!(box.least[axis_] >= lowest() && box.most[axis_] < highest())) return false;
   return !(core::wall_gap(cell, cell.cells[0], domain_, region_.get()) < kept_apart);
 }

@@ -65,7 +65,4 @@ class Inflow {
   std::vector<double> flux_;      ///< sum up to and with each node of the inlet
 };
 
-extern template class Inflow<2>;
-extern template class Inflow<3>;
-
 }  // namespace rouleau::run

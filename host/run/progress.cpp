@@ -80,13 +80,11 @@ std::string progress_line(const ProgressState& state, double rate, double remain
   const auto least = [&] {
     return std::min_element(shown.begin(), shown.end(), [](const Part& a, const Part& b) { return a.worth < b.worth; });
   };
-  while (shown.size() > 1 && stage.size() + bar_needs + joined(shown).size() > width) {
-    if (bar_needs > 0 && least()->worth > worth_of_the_bar) {
+  while (shown.size() > 1 && stage.size() + bar_needs + joined(shown).size() > width)
+    if (bar_needs > 0 && least()->worth > worth_of_the_bar)
       bar_needs = 0;
-    } else {
+    else
       shown.erase(least());
-    }
-  }
   const std::string numbers = joined(shown);
   if (bar_needs == 0) return (stage + numbers).substr(0, width);
   const std::size_t free = width - std::min(width, stage.size() + numbers.size() + around);
@@ -104,9 +102,8 @@ Progress::Progress(bool quiet)
 void Progress::update(const ProgressState& state) {
   if (quiet_) return;
   const auto now = std::chrono::steady_clock::now();
-  if (!drawn_ && first_step_ < 0) {  // a resumed run begins at a later step; its speed must not count the earlier ones
+  if (!drawn_ && first_step_ < 0)  // a resumed run begins at a later step; its speed must not count the earlier ones
     first_step_ = last_step_ = state.step;
-  }
   const double since_last = Seconds(now - last_).count();
   if (since_last < (terminal_ ? 0.1 : 10.0)) return;
 

@@ -98,14 +98,12 @@ class Simulation final : StepHooks {
   /// On the terminal, where what was lost is said even to whom wants no progress.
   void say_where_it_goes_on(const std::string& damage) const {
     const std::string step = "step " + std::to_string(state_.steps);
-    if (!damage.empty()) {
+    if (!damage.empty())
       std::cerr << "warning: going on from " << step << ", the checkpoint before the last, for " << damage << "\n";
-    } else if (!options_.quiet) {
+    else if (!options_.quiet)
       std::cerr << "going on from " << step << "\n";
-    }
-    if (options_.max_steps >= 0 && state_.steps > options_.max_steps) {
+    if (options_.max_steps >= 0 && state_.steps > options_.max_steps)
       std::cerr << "warning: " << step << " lies beyond the limit of " << options_.max_steps << " steps\n";
-    }
   }
 
   void run_stages() {

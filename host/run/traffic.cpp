@@ -1,7 +1,6 @@
 #include "traffic.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -117,9 +116,8 @@ std::vector<double> Traffic<D>::ways(const std::vector<typename Engine<D>::Cells
     for (const Arrival& other : change_.come) shorten(other.nodes, 0);
     for (const int other : there.own_cells()) shorten(there, other);
   }
-  for (const std::vector<double>& of_rank : core::all_of(engine_.ranks(), most)) {
+  for (const std::vector<double>& of_rank : core::all_of(engine_.ranks(), most))
     for (std::size_t i = 0; i < most.size(); ++i) most[i] = std::min(most[i], of_rank[i]);
-  }
   return most;
 }
 

@@ -67,7 +67,4 @@ class Traffic {
   Change change_;
 };
 
-extern template class Traffic<2>;
-extern template class Traffic<3>;
-
 }  // namespace rouleau::run

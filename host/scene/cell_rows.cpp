@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <iterator>
 
 #include "base/error.hpp"
@@ -45,9 +44,8 @@ std::optional<QuantityColumn> quantity(const std::string& name, const char* want
     }
     if (!small_letters(text).starts_with(name + '_')) continue;
     const std::string unit = text.substr(name.size() + 1);
-    if (found) {
+    if (found)
       refuse(i, in_quotes(found->name) + " and " + in_quotes(text) + " are both " + name + "; leave one of them out");
-    }
     try {
       found = {i, units.to_si("1 " + unit, wanted, name), text, unit};
     } catch (const units::UnitError& error) {
@@ -129,11 +127,10 @@ void CellRows::add(std::optional<int> type, int line, const Value& value, const 
   }
   const auto si = [&](const QuantityColumn& column, const AllowedRange& range) {
     const double result = value(column.at, column.name) * column.scale;
-    if (!(result >= range.least && result <= range.most)) {
+    if (!(result >= range.least && result <= range.most))
       refuse(column.at, in_quotes(text(column.at)) + ' ' + column.unit + " is out of range; " + column.name +
                             " lies between " + number(range.least / column.scale) + " and " +
                             number(range.most / column.scale));
-    }
     return result;
   };
   CellPlacement& cell = cells.emplace_back();

@@ -19,15 +19,14 @@ std::string from_utf16(std::string_view bytes) {
     const auto unit = static_cast<unsigned>(static_cast<unsigned char>(bytes[i + low])) |
                       static_cast<unsigned>(static_cast<unsigned char>(bytes[i + 1 - low])) << 8U;
     const auto put = [&](unsigned byte) { text += static_cast<char>(byte); };
-    if (unit < 0x80U) {
+    if (unit < 0x80U)
       put(unit);
-    } else if (unit < 0x800U) {
+    else if (unit < 0x800U)
       put(0xC0U | unit >> 6U), put(0x80U | (unit & 0x3FU));
-    } else if (unit < 0xD800U || unit > 0xDFFFU) {
+    else if (unit < 0xD800U || unit > 0xDFFFU)
       put(0xE0U | unit >> 12U), put(0x80U | (unit >> 6U & 0x3FU)), put(0x80U | (unit & 0x3FU));
-    } else {
+    else
       put('?');
-    }
   }
   return text;
 }
@@ -164,9 +163,8 @@ class CsvTable {
       refuse(entry.column, in_quotes(entry.text) + " has a '" + mark + "', and numbers of this file have a '" +
                                decimal_mark_ + "'\nwrite all numbers alike, without marks between thousands");
     }
-    if (mark == ',' && separator_ != ';' && decimal_mark_ == '\0' && entry.text.size() - at == 4) {
+    if (mark == ',' && separator_ != ';' && decimal_mark_ == '\0' && entry.text.size() - at == 4)
       refuse(entry.column, in_quotes(entry.text) + " may mean thousands or thousandths\nwrite it with a decimal point");
-    }
     decimal_mark_ = mark;
   }
 

@@ -23,9 +23,8 @@ double channel_viscosity(const Scene& scene) {
     c += fluidity * (to * to * to - from * from * from) / (3 * height * height * height);
   };
   add(0, height, 1 / scene.fluid.viscosity);
-  for (const FluidLayer& layer : scene.fluid.layers) {
+  for (const FluidLayer& layer : scene.fluid.layers)
     add(layer.from, layer.to, 1 / layer.viscosity - 1 / scene.fluid.viscosity);
-  }
   return 1 / (12 * (c - b * b / a));
 }
 
@@ -43,9 +42,8 @@ double duct_share(const Domain& domain) {
 
 ViscosityRange viscosity_range(const FluidProperties& fluid) {
   ViscosityRange range{fluid.viscosity, fluid.viscosity};
-  for (const FluidLayer& layer : fluid.layers) {
+  for (const FluidLayer& layer : fluid.layers)
     range = {std::min(range.least, layer.viscosity), std::max(range.most, layer.viscosity)};
-  }
   return range;
 }
 

@@ -23,12 +23,10 @@ class Hdf5Table {
     rows_.find_columns(names_, source_.units, refuse_);
     const CellColumns& columns = rows_.columns;
     values_.resize(names_.size());
-    for (const auto& column : {columns.place[0], columns.place[1], columns.place[2], columns.angle}) {
+    for (const auto& column : {columns.place[0], columns.place[1], columns.place[2], columns.angle})
       if (column) read_numbers(column->at);
-    }
-    for (const auto& column : {columns.step, columns.axis[0], columns.axis[1], columns.axis[2]}) {
+    for (const auto& column : {columns.step, columns.axis[0], columns.axis[1], columns.axis[2]})
       if (column) read_numbers(*column);
-    }
     if (columns.type) read_types(*columns.type);
     if (!count_ || *count_ == 0) refuse_(std::nullopt, "this file has no cells: its datasets are empty");
     for (row_ = 0; row_ < *count_; ++row_) {

@@ -42,9 +42,8 @@ template core::RegionPointer<3> fluid_region(const Scene&);
 std::vector<core::Layer> lattice_layers(const Scene& scene) {
   std::vector<core::Layer> layers;
   const double spacing = lattice_spacing(scene);
-  for (const FluidLayer& layer : scene.fluid.layers) {
+  for (const FluidLayer& layer : scene.fluid.layers)
     layers.push_back({layer.from / spacing, layer.to / spacing, layer.viscosity / scene.fluid.viscosity});
-  }
   return layers;
 }
 

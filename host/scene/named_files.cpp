@@ -16,9 +16,8 @@ namespace {
 void collect(const nlohmann::json& value, const std::string& pointer, std::vector<std::string>& entries) {
   if (value.is_object() && value.contains("file") && each_text(value["file"], [](const auto&) {}))
     entries.push_back(pointer);
-  for (const auto& [key, part] : value.items()) {
+  for (const auto& [key, part] : value.items())
     if (part.is_structured()) collect(part, json::child_pointer(pointer, key), entries);
-  }
 }
 
 std::filesystem::path folder_of_cells() { return installation().data / "rouleau" / "cells"; }
@@ -82,10 +81,9 @@ void take_shipped_cells(json::Document& scene, Faults& faults) {
 std::vector<std::string> entries_with_files(const nlohmann::json& scene) {
   std::vector<std::string> entries;
   if (!scene.is_object()) return entries;
-  for (const auto& [key, part] : scene.items()) {
+  for (const auto& [key, part] : scene.items())
     if (part.is_structured() && key != "notes" && key != "expected")
       collect(part, json::child_pointer("", key), entries);
-  }
   return entries;
 }
 

@@ -31,9 +31,8 @@ std::string spacing_remedy(const Domain& domain) {
   std::string remedy =
       "write size [" + in_micrometres(domain.size.x()) + ", " + in_micrometres(spacing * domain.nodes[1]) + ']';
   if (std::abs(nodes - std::round(nodes)) < spacing_tolerance * nodes && nodes > 3.5 &&
-      nodes < most_nodes_of_side + 0.5) {
+      nodes < most_nodes_of_side + 0.5)
     remedy += " or nodes [" + std::to_string(domain.nodes[0]) + ", " + number(std::round(nodes), 12) + ']';
-  }
   return remedy;
 }
 
@@ -41,9 +40,8 @@ std::string spacing_remedy(const Domain& domain) {
 void read_ends(const SceneFields& fields, Domain& domain, int axis) {
   const std::string key = std::string("/domain/") + axis_names[axis];
   if (!fields.has(key)) return;
-  if (axis >= domain.dimension()) {
+  if (axis >= domain.dimension())
     fields.refuse_key(key, "there is no z in two dimensions\ngive size and nodes three numbers, or leave z out");
-  }
   const auto ends = fields.value<nlohmann::json>(key);
   const bool inlet = fields.has(key + "/lower/inlet"), outlet = fields.has(key + "/upper/outlet");
   domain.periodic[axis] = axis == 0 ? !ends.is_object() : ends.is_string();
@@ -76,9 +74,8 @@ std::optional<double> read_tube(const SceneFields& fields, const Domain& domain)
                       "a tube has three dimensions, and this domain two\ngive size and nodes three numbers, or leave "
                       "walls out and close y");
   }
-  for (const char* key : {"/domain/y", "/domain/z"}) {
+  for (const char* key : {"/domain/y", "/domain/z"})
     if (fields.has(key)) fields.refuse_key(key, "the tube closes y and z; leave this out, or the tube");
-  }
   const std::string key = "/domain/walls/tube/radius";
   if (domain.node_count() > static_cast<double>(most_nodes_of_block))  // every rank has a mark for each node
     fields.refuse("/domain/nodes", number(domain.node_count(), 12) + " nodes are too many around a tube; at most " +
@@ -132,10 +129,9 @@ void read_domain(const SceneFields& fields, Domain& domain) {
   for (const int axis : {0, 1, 2}) fields.attempt([&] { read_ends(fields, domain, axis); });
   fields.attempt([&] {
     domain.nodes = read_nodes(fields, domain);
-    if (domain.node_count() > static_cast<double>(most_nodes)) {
+    if (domain.node_count() > static_cast<double>(most_nodes))
       fields.refuse("/domain/nodes", by_axes(domain.nodes) + " nodes are too many; at most " +
                                          std::to_string(most_nodes) + " can be computed");
-    }
     const double rows = domain.node_count() / domain.nodes[0];
     if (rows > static_cast<double>(most_rows))
       fields.refuse("/domain/nodes", number(rows, 12) + " rows of nodes along x are too many; at most " +
@@ -186,13 +182,12 @@ std::vector<FluidLayer> read_layers(const SceneFields& fields, double height) {
                        fields.quantity(pointer + "/to", "m", range::place),
                        fields.quantity(pointer + "/viscosity", "Pa s", range::viscosity)};
       if (!std::isfinite(layer.from + layer.to + layer.viscosity + height)) throw Misread{};
-      if (layer.from < -rounding || layer.to > height + rounding || !(layer.from < layer.to)) {
+      if (layer.from < -rounding || layer.to > height + rounding || !(layer.from < layer.to))
         fields.refuse(pointer,
                       "a layer from " + um(layer.from) + " to " + um(layer.to) +
                           (layer.from < layer.to ? " is not within the domain, which is " + um(height) + " high"
                                                  : " has no thickness; heights count from the lower wall upwards") +
                           "\ngive heights between 0 um and " + um(height) + ", \"from\" below \"to\"");
-      }
       layer.from = std::max(layer.from, 0.0);
       layer.to = std::min(layer.to, height);
       for (const FluidLayer& other : layers) {
@@ -325,9 +320,8 @@ Checks read_checks(const SceneFields& fields) {
 std::vector<std::filesystem::path> read_plugin_dirs(const SceneFields& fields, const std::filesystem::path& beside) {
   std::vector<std::filesystem::path> folders;
   for (const auto& folder : fields.value_or("/plugin_dirs", std::vector<std::string>{})) {
-    if (folder.find('\0') != std::string::npos) {
+    if (folder.find('\0') != std::string::npos)
       fields.refuse(json::child_pointer("/plugin_dirs", folders.size()), "a folder's name cannot hold a NUL character");
-    }
     folders.push_back(beside / folder);
   }
   return folders;

@@ -393,7 +393,13 @@ struct Scene {
   /// The cells that are there at the beginning.
   [[nodiscard]] std::span<const CellPlacement> placed() const { return {cells.data(), cells.size() - fed}; }
   /// Names of what an interaction acts between.
-  [[nodiscard]] std::array<std::string, 2> names_of(const Interaction& interaction) const;
+  [[nodiscard]] std::array<std::string, 2> names_of(const Interaction& interaction) const {
+    const auto name = [&](int type) -> std::string {
+      if (type == Interaction::wall) return wall_name;
+      return type == Interaction::self ? self_name : cell_types[type].name;
+    };
+    return {name(interaction.between[0]), name(interaction.between[1])};
+  }
   /// Place of a JSON pointer in the scene file, for an Error.
   [[nodiscard]] Place place(const std::string& pointer) const {
     return document ? document->place(pointer) : Place{"", pointer, 0, 0};

@@ -19,9 +19,8 @@ constexpr std::size_t most_types = 1000;
 bool is_plain_name(const std::string& name) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   if (name.empty() || name.size() > 100 || !letter(name.front())) return false;
-  for (const char c : name) {
+  for (const char c : name)
     if (!letter(c) && !(c >= '0' && c <= '9') && c != '_' && c != '-' && c != '.') return false;
-  }
   return true;
 }
 
@@ -94,9 +93,8 @@ Shape read_shape(const SceneFields& fields, const std::string& pointer, int dime
                   fields.value_or(pointer + "/sphere/prestretch", 1.0)};
   }
   if (fields.has(pointer + "/spheroid")) return read_spheroid(fields, pointer + "/spheroid", missing);
-  if (fields.has(pointer + "/ellipsoid")) {
+  if (fields.has(pointer + "/ellipsoid"))
     return Ellipsoid{fields.quantities(pointer + "/ellipsoid/semi_axes", "m", range::length, 3)};
-  }
   if (fields.has(pointer + "/mesh"))
     return MeshFile{fields.file(pointer + "/mesh/file"),
                     fields.quantity(pointer + "/mesh/unit", "m", range::unit_of_length)};
@@ -178,9 +176,7 @@ class Placements {
       return std::move(cells_);
     }
     const auto count = fields_.count("/cells");
-    for (std::size_t i = 0; i < count; ++i) {
-      fields_.attempt([&] { read_entry(json::child_pointer("/cells", i)); });
-    }
+    for (std::size_t i = 0; i < count; ++i) fields_.attempt([&] { read_entry(json::child_pointer("/cells", i)); });
     return std::move(cells_);
   }
 
@@ -253,9 +249,8 @@ class Placements {
   /// What a cell's own axis is turned to, if the scene says it.
   [[nodiscard]] std::optional<Eigen::Vector3d> axis(const std::string& pointer) const {
     if (!fields_.has(pointer + "/axis")) return std::nullopt;
-    if (domain_.dimension() == 2 && is_known(domain_)) {
+    if (domain_.dimension() == 2 && is_known(domain_))
       fields_.refuse_key(pointer + "/axis", "in two dimensions cells turn in the plane\ngive \"angle\"");
-    }
     return fields_.direction(pointer + "/axis");
   }
 
@@ -279,23 +274,19 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, const FluidProp
   for (const auto& [name, written] : written_types.items()) {
     const auto pointer = json::child_pointer("/cell_types", name);
     fields.attempt([&, &name = name] {
-      if (!is_plain_name(name)) {
+      if (!is_plain_name(name))
         fields.refuse_key(
             pointer,
             in_quotes(name) + " is no name for a cell type; use letters, digits, '_', '-' and '.', a letter first");
-      }
-      if (name == wall_name) {
+      if (name == wall_name)
         fields.refuse_key(pointer,
                           "\"wall\" is no name for a cell type: in \"between\" it stands for the walls; take another");
-      }
-      if (name == self_name) {
+      if (name == self_name)
         fields.refuse_key(
             pointer, "\"self\" is no name for a cell type: in \"between\" it stands for the same cell; take another");
-      }
     });
-    if (types.size() == most_types) {
+    if (types.size() == most_types)
       fields.refuse_key(pointer, "there are more than " + std::to_string(most_types) + " cell types");
-    }
     // The name stands, whatever is wrong with the rest.
     CellType& type = types.emplace_back();
     type.name = name;
@@ -310,10 +301,9 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, const FluidProp
         type.triangles = read_triangles(fields, pointer, type, domain);
         return;
       }
-      if (fields.has(pointer + "/triangles")) {
+      if (fields.has(pointer + "/triangles"))
         fields.refuse_key(pointer + "/triangles",
                           "an outline has segments\ngive \"segments\", about one for each spacing");
-      }
       fields.require(pointer, "segments", "about one per lattice spacing; or \"numerics\": \"auto\" chooses them");
       type.segments = fields.value<int>(pointer + "/segments");
     });
@@ -323,9 +313,8 @@ std::vector<CellType> read_cell_types(const SceneFields& fields, const FluidProp
     fields.attempt([&] {
       require("membrane");
       const std::size_t laws = fields.count(pointer + "/membrane");
-      for (std::size_t i = 0; i < laws; ++i) {
+      for (std::size_t i = 0; i < laws; ++i)
         fields.attempt([&] { type.membrane.push_back(fields.model(json::child_pointer(pointer + "/membrane", i))); });
-      }
     });
   }
   fields.attempt([&] {

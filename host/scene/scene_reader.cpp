@@ -38,9 +38,8 @@ bool SceneFields::settled(const std::string& pointer) const {
 }
 
 std::size_t SceneFields::count(const std::string& pointer) const {
-  for (std::size_t i = 0; i < of_schema_; ++i) {
+  for (std::size_t i = 0; i < of_schema_; ++i)
     if ((*faults_)[i].place().pointer == pointer) throw Misread{};
-  }
   return at(pointer).size();
 }
 
@@ -164,9 +163,8 @@ ModelChoice SceneFields::model(const std::string& pointer) const {
 int SceneFields::cell_type(const std::string& pointer, const std::vector<CellType>& types,
                            const std::vector<std::string>& others) const {
   const auto name = value<std::string>(pointer);
-  for (std::size_t i = 0; i < types.size(); ++i) {
+  for (std::size_t i = 0; i < types.size(); ++i)
     if (types[i].name == name) return static_cast<int>(i);
-  }
   if (types.empty()) {
     if (lacks_types_ || !settled("/cell_types")) throw Misread{};
     lacks_types_ = faults_ != nullptr;

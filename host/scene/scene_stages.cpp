@@ -16,21 +16,18 @@ namespace {
 void check_mean_velocity(const SceneFields& fields, const Stage& stage, const Scene& scene) {
   if (!stage.mean_velocity) return;
   const std::string key = stage.pointer + "/mean_velocity";
-  if (fields.has(stage.pointer + "/pressure_gradient")) {
+  if (fields.has(stage.pointer + "/pressure_gradient"))
     fields.refuse_key(key, "the pressure gradient is what keeps the mean velocity; leave one of the two out");
-  }
-  if (walls_move(stage)) {
+  if (walls_move(stage))
     fields.refuse_key(key, "a mean velocity is kept between walls at rest; leave it out, or shear_rate and walls");
-  }
   if (scene.domain.periodic[1] && !scene.domain.has_shapes()) {
     fields.refuse_key(
         key,
         "a mean velocity is kept against walls, but domain.y is \"periodic\"\n"
         "write \"y\": {\"lower\": {\"wall\": {}}, \"upper\": {\"wall\": {}}}, or leave out mean_velocity");
   }
-  if (*stage.mean_velocity == 0) {
+  if (*stage.mean_velocity == 0)
     fields.refuse(key, "a mean velocity of 0 drives nothing; leave it out for a stage at rest");
-  }
 }
 
 /// Faults that the schema cannot see because they lie between the keys of a stage.
@@ -38,9 +35,8 @@ void check_stage(const SceneFields& fields, const Stage& stage, const Scene& sce
   const auto& pointer = stage.pointer;
   const bool flows = scene.domain.is_open() || scene.domain.shape_speed > 0 || walls_move(stage) ||
                      stage.pressure_gradient.x() != 0.0 || stage.mean_velocity || stage.changes();
-  if (fields.has(pointer + "/walls") && fields.has(pointer + "/shear_rate")) {
+  if (fields.has(pointer + "/walls") && fields.has(pointer + "/shear_rate"))
     fields.refuse_key(pointer + "/walls", "walls and shear_rate both say how the walls move; leave one of them out");
-  }
   for (const char* key : {"shear_rate", "walls"}) {
     if (!fields.has(pointer + "/" + key)) continue;
     if (scene.domain.tube_radius || scene.domain.has_shapes()) {
@@ -126,9 +122,8 @@ double read_drive(const SceneFields& fields, const std::string& pointer, const c
 Oscillation read_oscillation(const SceneFields& fields, const std::string& stage, double height) {
   const std::string pointer = stage + "/oscillation", amplitude = pointer + "/amplitude";
   std::vector<std::string> driven;
-  for (const char* key : {"shear_rate", "walls", "pressure_gradient"}) {
+  for (const char* key : {"shear_rate", "walls", "pressure_gradient"})
     if (fields.has(stage + "/" + key)) driven.emplace_back(key);
-  }
   if (driven.empty()) {
     fields.refuse_key(pointer,
                       "an oscillation is added to what drives the stage, and nothing does\n"
@@ -151,16 +146,14 @@ Oscillation read_oscillation(const SceneFields& fields, const std::string& stage
                                             ", so it is one quantity; those of two "
                                             "walls go with \"walls\"");
   }
-  if (of_walls) {
+  if (of_walls)
     read_walls(fields, amplitude, height, oscillation);
-  } else if (driven[0] == "shear_rate") {
+  else if (driven[0] == "shear_rate")
     oscillation.shear_rate = fields.quantity(amplitude, "1/s", range::shear_rate);
-  } else {
+  else
     oscillation.pressure_gradient = fields.quantity(amplitude, "Pa/m", range::force_density);
-  }
-  if (oscillation.shear_rate == 0 && oscillation.mean_wall_speed == 0 && oscillation.pressure_gradient == 0) {
+  if (oscillation.shear_rate == 0 && oscillation.mean_wall_speed == 0 && oscillation.pressure_gradient == 0)
     fields.refuse(amplitude, "an amplitude of 0 oscillates nothing; leave oscillation out");
-  }
   return oscillation;
 }
 
@@ -216,13 +209,12 @@ void read_strengths(const SceneFields& fields, Stage& stage, std::size_t interac
     if (!fields.has(key)) continue;
     const nlohmann::json& value = fields.at(key);
     strength.steps = value.contains("steps");
-    if (value.is_number()) {
+    if (value.is_number())
       strength.values = {value.get<double>()};
-    } else if (strength.steps) {
+    else if (strength.steps)
       strength.values = value.at("steps").get<std::vector<double>>();
-    } else {
+    else
       strength.values = {value.at("from").get<double>(), value.at("to").get<double>()};
-    }
     if (!value.is_number() && !stage.duration)
       fields.refuse(key, "ramps and steps last as long as their stage\ngive the stage a duration (such as \"2 s\")");
     if (!value.is_number() && stage.until_equilibrium)
@@ -271,13 +263,11 @@ Stage read_stage(const SceneFields& fields, const std::string& pointer, const Sc
     stage.pressure_gradient.x() = read_drive(fields, pointer + "/pressure_gradient", "Pa/m", range::force_density,
                                              stage, stage.oscillation.pressure_gradient);
   });
-  if (fields.has(pointer + "/mean_velocity")) {
+  if (fields.has(pointer + "/mean_velocity"))
     stage.mean_velocity = fields.quantity(pointer + "/mean_velocity", "m/s", range::velocity);
-  }
   fields.attempt([&] {
-    if (fields.has(pointer + "/oscillation")) {
+    if (fields.has(pointer + "/oscillation"))
       stage.oscillation = read_oscillation(fields, pointer, scene.domain.size.y());
-    }
   });
   stage.density_factor = fields.value_or(pointer + "/density_factor", scene.numerics.density_factor);
   if (fields.has(pointer + "/density_factor")) stage.density_factor_key = pointer + "/density_factor";
@@ -370,11 +360,10 @@ Output read_output(const SceneFields& fields, const std::vector<Stage>& stages, 
           "\"wall_shear_stress\" is that on walls of a shape, and the domain has none\nleave it out: of plane "
           "walls series.csv has the stress; or give domain.walls or domain.obstacles");
     });
-  if (fields.has("/output/checkpoint/seconds")) {
+  if (fields.has("/output/checkpoint/seconds"))
     output.checkpoint_seconds = fields.quantity("/output/checkpoint/seconds", "s", range::time);
-  } else if (fields.has("/output/checkpoint")) {
+  else if (fields.has("/output/checkpoint"))
     output.checkpoint_seconds.reset();  // "never"
-  }
   output.aggregate_gap = fields.quantity_or("/output/aggregate_gap", "m", range::length, output.aggregate_gap);
   fields.attempt([&] {
     if (!fields.has("/output/profiles")) return;

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "base/text.hpp"
@@ -30,9 +29,8 @@ double turn(const Point& a, const Point& b, const Point& c) {
 
 /// Of a point that lies on the line through both others.
 bool is_between(const Point& point, const Point& a, const Point& b) {
-  for (const int k : {0, 1}) {
+  for (const int k : {0, 1})
     if (point[k] < std::min(a[k], b[k]) || point[k] > std::max(a[k], b[k])) return false;
-  }
   return true;
 }
 
@@ -63,9 +61,8 @@ class ShapeReader {
     if (fields_.has(below + "image")) shape.is = image(below + "image", inside_is_fluid);
     using Kind = WallShape::Kind;
     for (const auto& [name, kind] : {std::pair{"intersection", Kind::all_of}, std::pair{"union", Kind::any_of},
-                                     std::pair{"difference", Kind::first_without_others}}) {
+                                     std::pair{"difference", Kind::first_without_others}})
       if (fields_.has(below + name)) shape.is = joined(below + name, kind, inside_is_fluid, level);
-    }
     return shape;
   }
   /// Of a wall that has been read, m/s.
@@ -137,10 +134,9 @@ class ShapeReader {
   }
 
   [[nodiscard]] WallShape::Outline outline(const std::string& pointer) const {
-    for (const char* key : {"/lower", "/upper"}) {
+    for (const char* key : {"/lower", "/upper"})
       if (domain_.in_plane() && fields_.has(pointer + key))
         fields_.refuse_key(pointer + key, "there is no z in two dimensions\nleave this out");
-    }
     WallShape::Outline outline{{}, end(pointer + "/lower", -endless), end(pointer + "/upper", endless)};
     require_rise(pointer + "/upper", outline.lower, outline.upper, "lower to upper");
     const std::string points = pointer + "/points";

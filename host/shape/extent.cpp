@@ -17,6 +17,13 @@ bool is_surface(const scene::CellType& type) { return type.segments == 0; }
 /// Of the cell at rest where it is stretched from the start: lengths as placed.
 core::RestSurface placed_surface(const scene::CellType& type) { return core::rest_surface(make_surface(type)); }
 
+/// Half of the longest side of the box around a surface.
+double half_extent(const core::TriangleSurface& surface) {
+  Eigen::AlignedBox3d box;
+  for (const core::Vec<3>& node : surface.nodes) box.extend(node);
+  return box.sizes().maxCoeff() / 2;
+}
+
 }  // namespace
 
 double enclosed_by(const scene::CellType& type) {
@@ -45,17 +52,6 @@ double node_spacing(const scene::CellType& type) {
     sum += (surface.nodes()[edge.b] - surface.nodes()[edge.a]).norm();
   return sum / surface.mesh.edge_count();
 }
-
-namespace {
-
-/// Half of the longest side of the box around a surface.
-double half_extent(const core::TriangleSurface& surface) {
-  Eigen::AlignedBox3d box;
-  for (const core::Vec<3>& node : surface.nodes) box.extend(node);
-  return box.sizes().maxCoeff() / 2;
-}
-
-}  // namespace
 
 double shape_radius(const scene::Shape& shape) {
   if (const auto* biconcave = std::get_if<scene::Biconcave>(&shape)) return biconcave->radius;

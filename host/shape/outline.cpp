@@ -83,9 +83,8 @@ Outline make_outline(const scene::Shape& shape, int segments) {
   const Curve curve = curve_of(shape);
 
   double chord = 0;
-  for (int i = 0; i < segments; ++i) {
+  for (int i = 0; i < segments; ++i)
     chord += (curve(full_turn * (i + 1) / segments).place - curve(full_turn * i / segments).place).norm() / segments;
-  }
   // Secant steps on the chord until the nodes close after exactly one turn.
   std::vector<double> angles(static_cast<std::size_t>(segments) + 1);
   double old_chord = 0, old_excess = -full_turn;

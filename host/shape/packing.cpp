@@ -9,7 +9,6 @@
 #include "core/geometry/formulas.hpp"
 #include "core/geometry/parts.hpp"
 #include "extent.hpp"
-#include "outline.hpp"
 #include "rigid_outline.hpp"
 #include "rigid_surface.hpp"
 #include "scene/lattice.hpp"
@@ -91,19 +90,16 @@ class Packer {
     }
     grid_.emplace(box_, 2 * largest_ + gap);
     owner_.assign(cells.size(), obstacle);
-    for (std::size_t k = 0; k < packings.size(); ++k) {
+    for (std::size_t k = 0; k < packings.size(); ++k)
       for (int i = 0; i < packings[k].count; ++i) owner_[packings[k].first + i] = static_cast<int>(k);
-    }
     bodies_.resize(cells.size());
   }
 
   std::optional<PackingShortfall> pack(const PackingWatch& watch) {
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
+    for (std::size_t i = 0; i < cells_.size(); ++i)
       if (owner_[i] == obstacle) set_obstacle(i);
-    }
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
+    for (std::size_t i = 0; i < cells_.size(); ++i)
       if (owner_[i] != obstacle && !insert(i)) return shortfall(i);
-    }
     if (const auto stuck = grow(watch)) return shortfall(*stuck);
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       if (owner_[i] == obstacle) continue;
@@ -309,9 +305,8 @@ class Packer {
 
   [[nodiscard]] std::size_t smallest_cell() const {
     std::size_t least = bodies_.size();
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
       if (owner_[i] != obstacle && (least == bodies_.size() || bodies_[i].scale < bodies_[least].scale)) least = i;
-    }
     return least;
   }
   [[nodiscard]] double smallest() const { return bodies_[smallest_cell()].scale; }
@@ -324,25 +319,22 @@ class Packer {
   /// What all cells enclose as they are, and as they shall.
   [[nodiscard]] double grown() const {
     double content = 0;
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
       if (owner_[i] != obstacle) content += grown(bodies_[i]);
-    }
     return content;
   }
   [[nodiscard]] double wanted() const {
     double content = 0;
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
       if (owner_[i] != obstacle) content += bodies_[i].solid->content();
-    }
     return content;
   }
 
   [[nodiscard]] PackingShortfall shortfall(std::size_t cell) const {
     const auto index = static_cast<std::size_t>(owner_[cell]);
     double content = 0;
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i)
       if (owner_[i] == owner_[cell] && bodies_[i].solid != nullptr) content += grown(bodies_[i]);
-    }
     return {index, content * std::pow(unit_, D) / region_content(packings_[index], domain_)};
   }
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -99,9 +97,8 @@ class Survey {
   /// Between walls that face each other, where the way neither widens on one side alone nor ends.
   [[nodiscard]] std::pair<double, long> narrowest() const {
     std::pair<double, long> least{std::numeric_limits<double>::infinity(), -1};
-    for (const auto& [node, ridge] : ridges_) {
+    for (const auto& [node, ridge] : ridges_)
       if (ridge.width > 0 && std::pair(ridge.width, node) < least && leads_on(node, ridge)) least = {ridge.width, node};
-    }
     return least;
   }
   [[nodiscard]] Node node_of(long number) const {

@@ -6,7 +6,6 @@
 
 #include "base/text.hpp"
 #include "extent.hpp"
-#include "outline.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/scene_reader.hpp"
 
@@ -96,9 +95,8 @@ void add_random_cells(scene::Scene& scene) {
     const auto first = scene.cells.insert(scene.cells.begin() + packing.first, static_cast<std::size_t>(packing.count),
                                           {packing.type, middle, 0, packing.pointer});
     // Until they are placed they stand for any cells of their region: at all heights of it.
-    for (int i = 0; i < packing.count; ++i) {
+    for (int i = 0; i < packing.count; ++i)
       first[i].center.y() = packing.lower.y() + (i + 0.5) / packing.count * (packing.upper.y() - packing.lower.y());
-    }
   }
   scene::check_membrane_nodes(scene);
 }

@@ -51,19 +51,15 @@ RigidOutline::RigidOutline(const scene::CellType& type, double unit, double /*ga
   const double step = 2 * half_width_ / count_;
   inverse_step_ = 1 / step;
   half_diagonal_ = 0.7072 * step;
-  for (int j = 0; j < count_; ++j) {
-    for (int i = 0; i < count_; ++i) {
+  for (int j = 0; j < count_; ++j)
+    for (int i = 0; i < count_; ++i)
       map_.push_back(distance({(i + 0.5) * step - half_width_, (j + 0.5) * step - half_width_}));
-    }
-  }
 
   // Nodes and directions of both bodies are rounded; both outlines may be coarser than they will be.
   double coarser = 0;
-  if (few.nodes.size() < all.nodes.size()) {
-    for (const auto& node : all.nodes) {
+  if (few.nodes.size() < all.nodes.size())
+    for (const auto& node : all.nodes)
       coarser = std::max(coarser, std::abs(distance({node.x() / unit, node.y() / unit})));
-    }
-  }
   allowance_ = rounded(2 * coarser + 4 * std::ldexp(1 + radius_, -24));
 }
 

@@ -1,9 +1,7 @@
 #include "rigid_surface.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <map>
-#include <numeric>
 
 #include "extent.hpp"
 #include "surface.hpp"
@@ -52,6 +50,13 @@ RigidSurface::Orientation orientation(const Place<3>& axis, std::uint32_t angle)
   for (int i = 0; i < 3; ++i)
     made.rows[i] = {c * swing[i][0] - s * swing[i][2], swing[i][1], s * swing[i][0] + c * swing[i][2]};
   return made;
+}
+
+/// The inverse of rotated().
+Place<3> back(const RigidSurface::Orientation& turn, const Place<3>& v) {
+  Place<3> seen;
+  for (int k = 0; k < 3; ++k) seen[k] = turn.rows[0][k] * v[0] + turn.rows[1][k] * v[1] + turn.rows[2][k] * v[2];
+  return seen;
 }
 
 }  // namespace
@@ -212,9 +217,8 @@ void RigidSurface::make_map() {
       }
     }
   }
-  for (std::size_t i = 0; i < map_.size(); ++i) {
+  for (std::size_t i = 0; i < map_.size(); ++i)
     if (!outside[i]) map_[i] = -map_[i];
-  }
 }
 
 double RigidSurface::distance(const Place<3>& point, double at_most) const {
@@ -264,17 +268,6 @@ bool RigidSurface::keeps(const Place<3>& point, double least) const {
   // Farther than that from the surface, the point lies on the same side as the cube's middle.
   return found >= least && found > half_diagonal_ && *middle > 0;
 }
-
-namespace {
-
-/// The inverse of rotated().
-Place<3> back(const RigidSurface::Orientation& turn, const Place<3>& v) {
-  Place<3> seen;
-  for (int k = 0; k < 3; ++k) seen[k] = turn.rows[0][k] * v[0] + turn.rows[1][k] * v[1] + turn.rows[2][k] * v[2];
-  return seen;
-}
-
-}  // namespace
 
 bool encloses(const RigidBody<RigidSurface>& body, const Place<3>& point) {
   constexpr double outside = 1e-9;  // 0 would be kept inside, too

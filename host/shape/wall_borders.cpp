@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "base/text.hpp"
+#include "core/geometry/border.hpp"
 #include "core/geometry/faceted.hpp"
 #include "core/geometry/formulas.hpp"
-#include "core/geometry/zero_border.hpp"
 #include "formats/image_file.hpp"
 #include "formats/mesh_file.hpp"
 #include "surface.hpp"
@@ -78,9 +78,8 @@ core::Border<D> opened(core::Border<D> border, const core::Domain<D>& domain) {
       border.facets.push_back(facet);
     }
   }
-  for (std::size_t i = 0; i < own.facets.size(); ++i) {
+  for (std::size_t i = 0; i < own.facets.size(); ++i)
     if (!is_end[i]) border.facets.push_back(own.facets[i]);
-  }
   return border;
 }
 
@@ -145,20 +144,6 @@ void require_closed(const scene::SceneFields& fields, const std::string& pointer
                     ", at " + words + "\nclose it; along a periodic axis, let it end at both ends of the domain");
 }
 
-}  // namespace
-
-void require_reach(const scene::SceneFields& fields, const std::string& pointer, int axis, double period, double from,
-                   double to, double unit) {
-  if (from >= -0.5 - period * (1 + rounding) && to <= 2 * period - 0.5 + period * rounding) return;
-  const auto um = [&](double place) { return number((place + 0.5) * unit * 1e6) + " um"; };
-  fields.refuse(pointer, "it reaches from " + um(from) + " to " + um(to) + " along " + axis_name(axis) +
-                             ", where the domain is periodic and " + um(period - 0.5) +
-                             " long\nlet it end within one period of the domain, at 0 um and the domain's "
-                             "end if it goes through");
-}
-
-namespace {
-
 void weld_nearby(core::TriangleSurface& surface, const std::filesystem::path& file) {
   try {
     weld(surface, weld_reach(surface));
@@ -166,54 +151,6 @@ void weld_nearby(core::TriangleSurface& surface, const std::filesystem::path& fi
     throw Error(Cause::bad_input, rouleau::Place{file.string()}, error.what());
   }
 }
-
-}  // namespace
-
-core::Border<3> mesh_border(const scene::WallShape::Mesh& mesh) {
-  core::TriangleSurface surface = read_triangles(mesh.file);
-  core::Border<3> border{surface.nodes, surface.triangles};
-  if (!core::open_sides(border).empty()) {
-    weld_nearby(surface, mesh.file);
-    border = {surface.nodes, surface.triangles};
-  }
-  for (std::size_t i = 0; i < border.facets.size(); ++i) {
-    if (!(border.normal(border.facets[i]).norm() > 0))
-      throw Error(Cause::bad_input, rouleau::Place{mesh.file.string()},
-                  "triangle " + std::to_string(i) + " has no area", {"leave it out, and join what it joined"});
-  }
-  const Eigen::Matrix3d rotation = rotation_of(mesh.axis, mesh.angle);
-  for (Vec<3>& corner : border.corners) corner = rotation * (mesh.unit * corner) + mesh.at.in<3>();
-  return border;
-}
-
-template <int D>
-core::RegionPointer<D> closed_region(const scene::SceneFields& fields, const std::string& pointer,
-                                     core::Border<D> border, const core::Domain<D>& domain, double unit) {
-  if (border.facets.empty()) fields.refuse(pointer, "there are no triangles of any size\ngive a surface of triangles");
-  int held = 0;  // an axis along which it does not go through, if there is one
-  for (int k = 0; k < D; ++k) {
-    const auto [least, most] = std::ranges::minmax(border.corners, {}, [k](const Vec<D>& corner) { return corner[k]; });
-    if (domain.period(k) > 0) require_reach(fields, pointer, k, domain.period(k), least[k], most[k], unit);
-    if (passes(border, domain, held)) held = k;
-    if (domain.period(k) > 0 && !passes(border, domain, k) && most[k] - least[k] > domain.period(k))
-      fields.refuse(pointer,
-                    "it is longer than the domain along " + axis_name(k) +
-                        ", which is periodic, and would lie over its own image\nlet it begin at 0 um and end at " +
-                        number(domain.period(k) * unit * 1e6) + " um, or make it shorter");
-  }
-  border = imaged(opened(std::move(border), domain), domain);
-  if (border.facets.empty()) return everything<D>();
-  require_closed(fields, pointer, border, domain, unit);
-  if (!(enclosed(border, held) > 0))
-    fields.refuse(pointer, "the surface is inside out: its triangles run clockwise seen from outside\nturn them over");
-  try {
-    return std::make_shared<core::FacetedRegion<D>>(std::move(border));
-  } catch (const std::invalid_argument& error) {
-    fields.refuse(pointer, error.what());
-  }
-}
-
-namespace {
 
 /// Grey values of a stack, the first axis the fastest, and how many along each axis.
 template <int D>
@@ -273,6 +210,60 @@ Samples<D> padded(const Samples<D>& samples, int axis, int before, int after, st
 }
 
 }  // namespace
+
+void require_reach(const scene::SceneFields& fields, const std::string& pointer, int axis, double period, double from,
+                   double to, double unit) {
+  if (from >= -0.5 - period * (1 + rounding) && to <= 2 * period - 0.5 + period * rounding) return;
+  const auto um = [&](double place) { return number((place + 0.5) * unit * 1e6) + " um"; };
+  fields.refuse(pointer, "it reaches from " + um(from) + " to " + um(to) + " along " + axis_name(axis) +
+                             ", where the domain is periodic and " + um(period - 0.5) +
+                             " long\nlet it end within one period of the domain, at 0 um and the domain's "
+                             "end if it goes through");
+}
+
+core::Border<3> mesh_border(const scene::WallShape::Mesh& mesh) {
+  core::TriangleSurface surface = read_triangles(mesh.file);
+  core::Border<3> border{surface.nodes, surface.triangles};
+  if (!core::open_sides(border).empty()) {
+    weld_nearby(surface, mesh.file);
+    border = {surface.nodes, surface.triangles};
+  }
+  for (std::size_t i = 0; i < border.facets.size(); ++i) {
+    if (!(border.normal(border.facets[i]).norm() > 0))
+      throw Error(Cause::bad_input, rouleau::Place{mesh.file.string()},
+                  "triangle " + std::to_string(i) + " has no area", {"leave it out, and join what it joined"});
+  }
+  const Eigen::Matrix3d rotation = rotation_of(mesh.axis, mesh.angle);
+  for (Vec<3>& corner : border.corners) corner = rotation * (mesh.unit * corner) + mesh.at.in<3>();
+  return border;
+}
+
+template <int D>
+core::RegionPointer<D> closed_region(const scene::SceneFields& fields, const std::string& pointer,
+                                     core::Border<D> border, const core::Domain<D>& domain, double unit) {
+  if (border.facets.empty()) fields.refuse(pointer, "there are no triangles of any size\ngive a surface of triangles");
+  int held = 0;  // an axis along which it does not go through, if there is one
+  for (int k = 0; k < D; ++k) {
+    const auto [least, most] = std::ranges::minmax(border.corners, {}, [k](const Vec<D>& corner) { return corner[k]; });
+    if (domain.period(k) > 0) require_reach(fields, pointer, k, domain.period(k), least[k], most[k], unit);
+    if (passes(border, domain, held)) held = k;
+    if (domain.period(k) > 0 && !passes(border, domain, k) && most[k] - least[k] > domain.period(k))
+      fields.refuse(pointer,
+                    "it is longer than the domain along " + axis_name(k) +
+                        ", which is periodic, and would lie over its own image\nlet it begin at 0 um and end at " +
+                        number(domain.period(k) * unit * 1e6) + " um, or make it shorter");
+  }
+  border = imaged(opened(std::move(border), domain), domain);
+  if (border.facets.empty()) return everything<D>();
+  require_closed(fields, pointer, border, domain, unit);
+  if (!(enclosed(border, held) > 0))
+    fields.refuse(pointer, "the surface is inside out: its triangles run clockwise seen from outside\nturn them over");
+  try {
+    return std::make_shared<core::FacetedRegion<D>>(std::move(border));
+  } catch (const std::invalid_argument& error) {
+    fields.refuse(pointer, error.what());
+  }
+}
 
 template <int D>
 core::RegionPointer<D> picture_region(const scene::SceneFields& fields, const std::string& pointer,

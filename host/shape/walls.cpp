@@ -7,7 +7,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "base/text.hpp"
 #include "core/geometry/faceted.hpp"
 #include "core/geometry/formulas.hpp"
 #include "core/geometry/parts.hpp"

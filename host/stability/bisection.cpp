@@ -82,17 +82,14 @@ class Search {
   void look_beyond() {
     std::vector<double> borders{rounded_value(range_.from, range_.whole), rounded_value(range_.to, range_.whole)};
     for (const StabilityEdge& edge : found_.edges) {
-      for (const auto& border : {edge.stable_up_to, edge.unstable_from}) {
+      for (const auto& border : {edge.stable_up_to, edge.unstable_from})
         if (border) borders.push_back(*border);
-      }
     }
     std::sort(borders.begin(), borders.end());
-    for (std::size_t i = 1; i < borders.size(); ++i) {
+    for (std::size_t i = 1; i < borders.size(); ++i)
       if (!narrow(borders[i - 1], borders[i])) (void)stable(between(borders[i - 1], borders[i], 0.5));
-    }
-    for (const auto& [value, is_stable] : known_) {
+    for (const auto& [value, is_stable] : known_)
       if (is_stable != expected(value)) found_.out_of_order.push_back(value);
-    }
   }
 
   /// What the edges say of a value.

@@ -1,13 +1,11 @@
 #include "limits_document.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 #include "base/text.hpp"
 #include "json/document.hpp"
 #include "json/json_pointer.hpp"
-#include "json/schema.hpp"
 #include "units/units.hpp"
 
 namespace rouleau::stability {

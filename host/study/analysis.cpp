@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include "base/text.hpp"
 
@@ -192,20 +191,14 @@ ResolvedReference resolve_reference(const StudyData& study, std::size_t quantity
                                     const std::vector<MethodLimit>& by_method) {
   const Reference& asked = study.quantities[quantity].reference;
   ResolvedReference result{asked.kind, unknown_number, unknown_number, unknown_number, "", {}, {}, ""};
-  switch (asked.kind) {
-    case ReferenceKind::value:
-    case ReferenceKind::file:
-    case ReferenceKind::analytic:
-      result.value = asked.value;
-      result.uncertainty = asked.uncertainty;
-      result.source = asked.source;
-      break;
-    case ReferenceKind::richardson:
-      resolve_richardson(study, asked, by_method, result);
-      break;
-    case ReferenceKind::point:
-      resolve_point(study, quantity, asked, by_method, result);
-      break;
+  if (asked.kind == ReferenceKind::richardson) {
+    resolve_richardson(study, asked, by_method, result);
+  } else if (asked.kind == ReferenceKind::point) {
+    resolve_point(study, quantity, asked, by_method, result);
+  } else {
+    result.value = asked.value;
+    result.uncertainty = asked.uncertainty;
+    result.source = asked.source;
   }
   return result;
 }

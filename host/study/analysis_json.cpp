@@ -172,9 +172,8 @@ Json study_json(const StudyState& state) {
                  {"points", points}});
   const StudyData data = study_data(state);
   add_analysis(result, data, analyse(data));
-  for (const MatrixPoint& point : state.points) {
+  for (const MatrixPoint& point : state.points)
     if (point.record) tried.push_back(result["points"][point.id]);
-  }
   result["points"] = tried;
   return result;
 }
@@ -222,13 +221,11 @@ bool StudyState::complete() const {
 
 void measure_point(const Study& study, MatrixPoint& point, const std::filesystem::path& directory) {
   point.results.clear();
-  for (const Quantity& quantity : study.quantities) {
-    if (point.record->end == trial::TrialEnd::completed) {
+  for (const Quantity& quantity : study.quantities)
+    if (point.record->end == trial::TrialEnd::completed)
       point.results.push_back(measure(quantity, directory));
-    } else {
+    else
       point.results.push_back({NAN, 0, "the run did not complete: " + trial::to_string(point.record->end)});
-    }
-  }
 }
 
 StudyData study_data(const StudyState& state) {
@@ -240,9 +237,8 @@ StudyData study_data(const StudyState& state) {
   data.quantities = study.quantities;
   for (const MatrixPoint& point : state.points) {
     std::vector<double> times;
-    if (point.record && point.record->end == trial::TrialEnd::completed) {
+    if (point.record && point.record->end == trial::TrialEnd::completed)
       for (const trial::TimedRun& run : point.record->runs) times.push_back(run.wall_s);
-    }
     const trial::MedianRange wall = trial::median_range(times);
     data.points.push_back({point.point.setting, wall.median, point.results, {wall.least, wall.most}});
   }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -16,10 +15,6 @@ namespace rouleau::study {
 namespace {
 
 using Json = nlohmann::json;
-
-Measured undefined_because(std::string why_not) {
-  return {std::numeric_limits<double>::quiet_NaN(), 0, std::move(why_not)};
-}
 
 Measured defined_or(double value, const std::string& why_not) {
   return std::isfinite(value) ? Measured{value, 0, ""} : undefined_because(why_not);

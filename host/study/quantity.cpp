@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <numbers>
 
 #include "base/synonyms.hpp"
 #include "base/text.hpp"
@@ -103,9 +102,7 @@ void read_own_keys(const scene::SceneFields& fields, const std::string& pointer,
 double number_of_file(const scene::SceneFields& fields, const json::Document& file, const std::string& pointer) {
   const std::string inside = fields.line(pointer);
   const auto tokens = json::split_pointer(inside);
-  if (!tokens) {
-    fields.refuse(pointer, in_quotes(inside) + " is no JSON pointer (for example \"/0/steady/D\")");
-  }
+  if (!tokens) fields.refuse(pointer, in_quotes(inside) + " is no JSON pointer (for example \"/0/steady/D\")");
   const nlohmann::json* at = &file.root();
   std::string reached;
   for (const std::string& token : *tokens) {

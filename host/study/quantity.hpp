@@ -116,6 +116,11 @@ struct Measured {
   std::string why_not;     ///< why there is no value; empty where there is one
 };
 
+/// No value, and why.
+inline Measured undefined_because(const std::string& why_not) {
+  return {std::numeric_limits<double>::quiet_NaN(), 0, why_not};
+}
+
 /// Takes the quantity from what a run has written. A run that did not complete has no values. Throws
 /// Error(input_output) for files that cannot be read.
 Measured measure(const Quantity& quantity, const std::filesystem::path& run_directory);

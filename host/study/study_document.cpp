@@ -6,7 +6,6 @@
 #include "base/synonyms.hpp"
 #include "base/text.hpp"
 #include "json/json_pointer.hpp"
-#include "json/schema.hpp"
 
 namespace rouleau::study {
 
@@ -56,9 +55,8 @@ int read_line(const Study& study) {
   std::vector<std::string> names;
   for (const trial::Axis& axis : study.axes) names.push_back(axis.name);
   if (root.contains("line")) return index_of(names, root["line"], study.document->place("/line"), "axis of the matrix");
-  for (std::size_t a = 0; a < study.axes.size(); ++a) {
+  for (std::size_t a = 0; a < study.axes.size(); ++a)
     if (study.axes[a].refines) return static_cast<int>(a);
-  }
   return study.axes.empty() ? -1 : 0;
 }
 

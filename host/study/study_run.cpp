@@ -31,19 +31,12 @@ std::string words_of(const MatrixPoint& point) {
   std::vector<double> walls;
   for (const trial::TimedRun& run : record.runs) walls.push_back(run.wall_s);
   const auto [least, most] = std::minmax_element(walls.begin(), walls.end());
-  std::string text = record.steps.dump() + " steps in " + duration_text(*least);
-  if (walls.size() > 1) text += " to " + duration_text(*most);
+  std::string text = record.steps.dump() + " steps in " + time_in_words(*least);
+  if (walls.size() > 1) text += " to " + time_in_words(*most);
   return text;
 }
 
 }  // namespace
-
-std::string duration_text(double seconds) {
-  if (std::isnan(seconds)) return "an unknown time";
-  if (seconds < 120) return number(seconds, 2) + " s";
-  if (seconds < 7200) return number(seconds / 60, 2) + " min";
-  return number(seconds / 3600, 2) + " h";
-}
 
 StudyRun::StudyRun(const Study& study, StudyOptions options)
     : study_(study),
@@ -61,20 +54,18 @@ void StudyRun::prepare() {
                              trial::threads_of(study_.axes, all[i], study_.threads)});
     prepare_point(state_.points.back());
   }
-  for (MatrixPoint& point : state_.points) {
+  for (MatrixPoint& point : state_.points)
     if (runs_missing(point) > 0 && !campaign_.interrupted()) plan_point(point);
-  }
 }
 
 void StudyRun::prepare_point(MatrixPoint& point) {
   point.fingerprint = trial::fingerprint(point.scene, study_.scene_file,
                                          {"threads " + std::to_string(point.threads), run::machine_description()});
   point.record = campaign_.find(point.fingerprint);
-  if (point.record) {
+  if (point.record)
     measure_point(study_, point, campaign_.directory_of(point.fingerprint));
-  } else {
+  else
     point.left_out = "not yet run";
-  }
 }
 
 void StudyRun::plan_point(MatrixPoint& point) {
@@ -100,9 +91,8 @@ double StudyRun::expected_s(const MatrixPoint& point) const {
 /// Cheapest first.
 std::vector<MatrixPoint*> StudyRun::missing_points() {
   std::vector<MatrixPoint*> missing;
-  for (MatrixPoint& point : state_.points) {
+  for (MatrixPoint& point : state_.points)
     if (runs_missing(point) > 0) missing.push_back(&point);
-  }
   std::stable_sort(missing.begin(), missing.end(),
                    [&](const MatrixPoint* a, const MatrixPoint* b) { return expected_s(*a) < expected_s(*b); });
   return missing;
@@ -133,14 +123,14 @@ void StudyRun::run_all() {
       passed.insert(point.id);
       if (!point.record)
         point.left_out =
-            "expected to take " + duration_text(expected) + "; " + duration_text(left) + " of the budget were left";
+            "expected to take " + time_in_words(expected) + "; " + time_in_words(left) + " of the budget were left";
       continue;
     }
     double all = 0;
     for (const MatrixPoint* other : missing) all += expected_s(*other);
-    campaign_.say(trial::name_of(study_.axes, point.point) + ": expected " + duration_text(expected) + "; " +
+    campaign_.say(trial::name_of(study_.axes, point.point) + ": expected " + time_in_words(expected) + "; " +
                   std::to_string(missing.size()) + " of " + std::to_string(state_.points.size()) + " points left, " +
-                  duration_text(std::min(all, left)));
+                  time_in_words(std::min(all, left)));
     if (take_turn(point) != PointEnd::done) passed.insert(point.id);
   }
 }

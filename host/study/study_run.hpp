@@ -1,7 +1,6 @@
 // Runs the points of a study, one after the other, and keeps study.json true to what is there.
 #pragma once
 
-#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
@@ -52,8 +51,5 @@ class StudyRun {
   double spent_s_ = 0;
   files::FileLock timing_lock_;
 };
-
-/// "3.2 s", "12 min", "2.1 h"
-std::string duration_text(double seconds);
 
 }  // namespace rouleau::study

@@ -13,10 +13,6 @@ namespace rouleau::study {
 
 namespace {
 
-Measured no_velocity_error(std::string why_not) {
-  return {std::numeric_limits<double>::quiet_NaN(), 0, std::move(why_not)};
-}
-
 /// Why the exact flows do not hold for a run; empty where they do.
 std::string why_no_exact_flow(const scene::Scene& scene) {
   if (!scene.cells.empty() || !scene.packings.empty())
@@ -78,12 +74,12 @@ ExactFlow exact_flow(const Quantity& quantity, const scene::Scene& scene, const 
 
 Measured velocity_error(const Quantity& quantity, const std::filesystem::path& run_directory) {
   const scene::Scene scene = plan::read_unpacked_scene(run_directory / "scene.json").scene;
-  if (const std::string why_not = why_no_exact_flow(scene); !why_not.empty()) return no_velocity_error(why_not);
+  if (const std::string why_not = why_no_exact_flow(scene); !why_not.empty()) return undefined_because(why_not);
   const auto field = files::last_velocity(run_directory / "frames.h5");
-  if (!field) return no_velocity_error("frames.h5 has no velocity: ask for it in output.fields");
+  if (!field) return undefined_because("frames.h5 has no velocity: ask for it in output.fields");
   const scene::Stage& stage = scene.stages.at(field->stage);
   if (const std::string why_not = why_no_exact_flow(quantity, scene, stage, field->stage == 0); !why_not.empty())
-    return no_velocity_error(why_not);
+    return undefined_because(why_not);
 
   const ExactFlow flow = exact_flow(quantity, scene, stage, field->time);
   std::vector<double> exact;
@@ -94,7 +90,7 @@ Measured velocity_error(const Quantity& quantity, const std::filesystem::path& r
     }
   }
   const double error = relative_l2(field->velocity, exact);
-  return std::isfinite(error) ? Measured{error, 0, ""} : no_velocity_error("the velocity in frames.h5 is not finite");
+  return std::isfinite(error) ? Measured{error, 0, ""} : undefined_because("the velocity in frames.h5 is not finite");
 }
 
 }  // namespace rouleau::study

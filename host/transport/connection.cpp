@@ -38,11 +38,10 @@ class Patience {
   void wait() {
     ++looks_;
     if (looks_ < 50) return;
-    if (looks_ < 100'000) {
+    if (looks_ < 100'000)
       ::sched_yield();
-    } else {
+    else
       std::this_thread::sleep_for(std::chrono::microseconds(200));
-    }
   }
 
  private:
@@ -182,9 +181,8 @@ void Connection::say_farewell(int exit_code, const std::string& words) {
   core::Message message(sizeof exit_code + words.size());
   std::memcpy(message.data(), &exit_code, sizeof exit_code);
   std::memcpy(message.data() + sizeof exit_code, words.data(), words.size());
-  for (int to = 0; to < ranks(); ++to) {
+  for (int to = 0; to < ranks(); ++to)
     if (to != rank()) begin_to_send(to, farewell, message);
-  }
 }
 
 std::optional<Launch> launched() {

@@ -1,12 +1,10 @@
 // Messages over MPI, by a transport library that is opened for it, where a launcher has started several ranks.
 #pragma once
 
-#include <cstdint>
 #include <deque>
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "core/domain/transport.hpp"
 #include "table.h"

@@ -1,6 +1,5 @@
 #include "campaign.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <regex>
@@ -110,6 +109,13 @@ double read_time_limit(const CampaignKind& kind, const json::Document& document)
   return seconds;
 }
 
+/// A text that a spreadsheet would compute stands behind an apostrophe; a quantity such as "-5 um" is none.
+std::string cell_text(const std::string& text) {
+  static const std::regex quantity(R"([+-]?[0-9.]+(e[+-]?[0-9]+)?( [A-Za-z0-9/ ]*)?)", std::regex::icase);
+  const bool computed = !text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
+  return files::csv_text(computed && !std::regex_match(text, quantity) ? '\'' + text : text);
+}
+
 }  // namespace
 
 Campaign::Campaign(const CampaignKind& kind, const CampaignFile& file, CampaignOptions options)
@@ -209,17 +215,6 @@ Json result_head(const CampaignKind& kind, const CampaignFile& file, const std::
           {"complete", complete},
           {"axes", axes_json(file.axes)}};
 }
-
-namespace {
-
-/// A text that a spreadsheet would compute stands behind an apostrophe; a quantity such as "-5 um" is none.
-std::string cell_text(const std::string& text) {
-  static const std::regex quantity(R"([+-]?[0-9.]+(e[+-]?[0-9]+)?( [A-Za-z0-9/ ]*)?)", std::regex::icase);
-  const bool computed = !text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
-  return files::csv_text(computed && !std::regex_match(text, quantity) ? '\'' + text : text);
-}
-
-}  // namespace
 
 std::string csv_line(const Json& fields) {
   std::string line;

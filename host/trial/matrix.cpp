@@ -22,13 +22,10 @@ const Json& value_at(const json::Document& document, const std::string& pointer)
 std::vector<std::string> keys_in_order(const json::Document& document, const std::string& pointer) {
   json::TextTree::Index node = 0;
   const auto tokens = json::split_pointer(pointer).value();
-  for (const std::string& token : tokens) {
-    node = document.tree().child(document.text(), node, token).value();
-  }
+  for (const std::string& token : tokens) node = document.tree().child(document.text(), node, token).value();
   std::vector<std::string> keys;
-  for (const json::TextTree::Index child : document.tree().children(node)) {
+  for (const json::TextTree::Index child : document.tree().children(node))
     keys.push_back(json::TextTree::key(document.text(), document.tree()[child].key));
-  }
   return keys;
 }
 
@@ -120,9 +117,8 @@ class AxisReader {
       Setting setting{name, {}, position_of(name)};
       Json tried = scene_;
       put_changes(tried, document_, place);
-      for (const std::string& key : keys_in_order(document_, place)) {
+      for (const std::string& key : keys_in_order(document_, place))
         setting.set.emplace_back(key, value_at(document_, place)[key]);
-      }
       settings.push_back(std::move(setting));
     }
     return settings;
@@ -130,9 +126,8 @@ class AxisReader {
 
   [[nodiscard]] std::vector<Setting> threads() const {
     std::vector<Setting> settings;
-    for (const Json& count : axis_["threads"]) {
+    for (const Json& count : axis_["threads"])
       settings.push_back({count.dump(), {}, count.get<double>(), count.get<int>()});
-    }
     return settings;
   }
 
@@ -167,6 +162,10 @@ class AxisReader {
   const Json& scene_;
   const Json& axis_;
 };
+
+const Setting& setting_of(const Axis& axis, const Point& point, std::size_t index) {
+  return axis.settings[point.setting[index]];
+}
 
 }  // namespace
 
@@ -205,14 +204,6 @@ std::vector<Point> cross(const std::vector<Axis>& axes) {
   return points;
 }
 
-namespace {
-
-const Setting& setting_of(const Axis& axis, const Point& point, std::size_t index) {
-  return axis.settings[point.setting[index]];
-}
-
-}  // namespace
-
 Json scene_of(const Json& base, const std::vector<Axis>& axes, const Point& point) {
   Json scene = base;
   for (std::size_t a = 0; a < axes.size(); ++a) {
@@ -239,16 +230,14 @@ Json labels_of(const std::vector<Axis>& axes, const Point& point) {
 
 std::string name_of(const std::vector<Axis>& axes, const Point& point) {
   std::string name;
-  for (std::size_t a = 0; a < axes.size(); ++a) {
+  for (std::size_t a = 0; a < axes.size(); ++a)
     name += (name.empty() ? "" : ", ") + axes[a].name + ' ' + setting_of(axes[a], point, a).label;
-  }
   return name.empty() ? "the scene" : name;
 }
 
 void put_changes(Json& scene, const json::Document& document, const std::string& pointer) {
-  for (const std::string& key : keys_in_order(document, pointer)) {
+  for (const std::string& key : keys_in_order(document, pointer))
     put(scene, key, value_at(document, pointer)[key], document.key_place(json::child_pointer(pointer, key)));
-  }
 }
 
 }  // namespace rouleau::trial

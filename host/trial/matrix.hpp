@@ -1,7 +1,6 @@
 // The matrix of a study: axes of settings that change a scene, crossed with each other.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>

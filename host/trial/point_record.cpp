@@ -41,9 +41,8 @@ TimedRun run_of(const TrialResult& result) {
   TimedRun run{result.wall_s, result.cpu_s, result.wall_s, Json::array()};
   if (!result.summary.is_object()) return run;
   run.wall_s = result.summary.value("wall_s", result.wall_s);
-  for (const Json& pass : result.summary.value("passes", Json::array())) {
+  for (const Json& pass : result.summary.value("passes", Json::array()))
     run.passes.push_back({{"name", pass["name"]}, {"wall_s", pass["wall_s"]}});
-  }
   return run;
 }
 
@@ -79,9 +78,8 @@ std::vector<fs::path> scene_plugin_dirs(const Json& scene, const fs::path& scene
 
 std::string tables_sha256(const fs::path& directory) {
   std::set<fs::path> tables;
-  for (const auto& entry : fs::directory_iterator(directory)) {
+  for (const auto& entry : fs::directory_iterator(directory))
     if (entry.path().extension() == ".csv") tables.insert(entry.path());
-  }
   std::string all;
   for (const fs::path& table : tables) all += table.filename().string() + ' ' + sha256(table) + '\n';
   return sha256_of(all);
@@ -175,9 +173,8 @@ std::string fingerprint(const Json& scene, const fs::path& scene_file, const std
   Json all = {{"scene", scene}, {"program", program_sha256()}, {"plugins", Json::array()}, {"further", further}};
   if (all["scene"].is_object()) all["scene"].erase("plugin_dirs");
   if (all["scene"].is_object()) all["scene"].erase("notes");
-  for (const UsedPlugin& plugin : plugins_named(scene, scene_file)) {
+  for (const UsedPlugin& plugin : plugins_named(scene, scene_file))
     all["plugins"].push_back({plugin.id, plugin.library_sha256, plugin.manifest_sha256});
-  }
   for (const std::string& entry : scene::entries_with_files(scene)) {
     scene::each_text(scene.at(Json::json_pointer(entry + "/file")), [&](const Json& name) {
       const fs::path file = fs::absolute(scene_file).parent_path() / name.get<std::string>();

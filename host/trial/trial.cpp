@@ -48,9 +48,8 @@ nlohmann::json moved_scene(const Trial& trial) {
     });
   }
   if (!scene.is_object() || !scene.contains("plugin_dirs") || !scene["plugin_dirs"].is_array()) return scene;
-  for (auto& entry : scene["plugin_dirs"]) {
+  for (auto& entry : scene["plugin_dirs"])
     if (entry.is_string()) entry = (folder / entry.get<std::string>()).lexically_normal().string();
-  }
   return scene;
 }
 
@@ -65,12 +64,9 @@ std::vector<std::string> scene_arguments(const std::string& command, const Trial
   std::vector<std::string> arguments{command, scene_file_of(trial).string()};
   const fs::path lock = trial.lock.empty() ? plugin::lock_beside(trial.scene_file) : trial.lock;
   std::error_code ignored;
-  if (!trial.lock.empty() || fs::exists(fs::symlink_status(lock, ignored))) {
+  if (!trial.lock.empty() || fs::exists(fs::symlink_status(lock, ignored)))
     arguments.insert(arguments.end(), {"--lock", lock.string()});
-  }
-  for (const fs::path& folder : trial.plugin_dirs) {
-    arguments.insert(arguments.end(), {"--plugin-dir", folder.string()});
-  }
+  for (const fs::path& folder : trial.plugin_dirs) arguments.insert(arguments.end(), {"--plugin-dir", folder.string()});
   return arguments;
 }
 
@@ -78,19 +74,11 @@ TrialEnd end_of(const ProcessEnd& process) {
   if (process.stopped) return TrialEnd::interrupted;
   if (process.timed_out) return TrialEnd::timed_out;
   if (process.signal != 0) return TrialEnd::crashed;
-  switch (process.exit_code) {
-    case exit_code::done:
-      return TrialEnd::completed;
-    case exit_code::simulation_failed:
-      return TrialEnd::diverged;
-    case exit_code::bad_input:
-    case exit_code::plugin_refused:
-      return TrialEnd::refused;
-    case exit_code::interrupted:
-      return TrialEnd::interrupted;  // by somebody else's signal
-    default:
-      return TrialEnd::crashed;
-  }
+  const int code = process.exit_code;
+  if (code == exit_code::done) return TrialEnd::completed;
+  if (code == exit_code::simulation_failed) return TrialEnd::diverged;
+  if (code == exit_code::bad_input || code == exit_code::plugin_refused) return TrialEnd::refused;
+  return code == exit_code::interrupted ? TrialEnd::interrupted : TrialEnd::crashed;  // by somebody else's signal
 }
 
 std::string trimmed(std::string text) {
@@ -99,20 +87,11 @@ std::string trimmed(std::string text) {
 }
 
 std::string message_of(TrialEnd end, const ProcessEnd& process, double time_limit_s) {
+  if (end == TrialEnd::completed) return {};
+  if (end == TrialEnd::interrupted) return "interrupted";
+  if (end == TrialEnd::timed_out) return "not finished after " + number(time_limit_s) + " s, the study's time limit";
   std::string words = trimmed(process.output);
-  switch (end) {
-    case TrialEnd::completed:
-      return {};
-    case TrialEnd::interrupted:
-      return "interrupted";
-    case TrialEnd::timed_out:
-      return "not finished after " + number(time_limit_s) + " s, the study's time limit";
-    case TrialEnd::diverged:
-    case TrialEnd::refused:
-      return words;
-    case TrialEnd::crashed:
-      break;
-  }
+  if (end != TrialEnd::crashed) return words;
   const std::string how = process.signal != 0 ? "ended by signal " + std::to_string(process.signal) + " (" +
                                                     ::strsignal(process.signal) + ')'
                                               : "ended with exit code " + std::to_string(process.exit_code);

@@ -62,9 +62,8 @@ constexpr std::array<std::string_view, 32> compounds{
 }  // namespace
 
 std::string kind_of(const Dimension& dimension) {
-  for (const auto& entry : named) {
+  for (const auto& entry : named)
     if (entry.dimension == dimension) return std::string(entry.kind);
-  }
   constexpr std::array<const char*, 6> base{"kg", "m", "s", "K", "mol", "A"};
   std::string text;
   for (std::size_t i = 0; i < base.size(); ++i) {
@@ -76,9 +75,8 @@ std::string kind_of(const Dimension& dimension) {
 
 std::string wanted_unit(std::string_view unit, const Dimension& dimension) {
   const Named* best = nullptr;
-  for (const auto& entry : named) {
+  for (const auto& entry : named)
     if (entry.dimension == dimension && (best == nullptr || entry.unit == unit)) best = &entry;
-  }
   std::string wanted = unit == "1" ? "a plain number" : std::string(unit);
   if (best == nullptr || best->example.empty()) return wanted;
   const auto other = best->other_example.empty() ? "" : " or \"" + std::string(best->other_example) + '"';

@@ -165,9 +165,8 @@ class Reader {
   /// From a letter to a letter, with digits between them as in "cmH2O".
   bool symbol() {
     std::size_t end = 0;
-    for (std::size_t at = 0; at < rest_.size() && (at_letter(at) || (end > 0 && is_digit(rest_[at]))); ++at) {
+    for (std::size_t at = 0; at < rest_.size() && (at_letter(at) || (end > 0 && is_digit(rest_[at]))); ++at)
       if (at_letter(at)) end = at + 1;
-    }
     if (end == 0) return false;
     symbols.push_back(rest_.substr(0, end));
     rest_.remove_prefix(end);
@@ -216,13 +215,12 @@ struct Units::System {
   void require_usable(const std::string& symbol, std::string_view unit, const Dimension* wanted) const {
     const auto parsed = parse(symbol);
     Parts parts;
-    if (parsed) {
+    if (parsed)
       parts = parts_of(parsed);
-    } else if (symbol == "lg" || symbol == "ln" || symbol == "lb") {
+    else if (symbol == "lg" || symbol == "ln" || symbol == "lb")
       visit_logarithmic(nullptr, 0, nullptr, &parts);
-    } else {
+    else
       throw UnitError(unknown_unit(unit, symbol, wanted));
-    }
     if (!parts.refused.empty()) throw UnitError(in_quotes(unit) + " is not possible: " + parts.refused);
   }
 
@@ -313,9 +311,8 @@ Dimension Units::dimension(std::string_view unit) const { return system_->take_a
 
 double Units::scale(std::string_view unit) const {
   const auto parts = system_->take_apart(unit);
-  if (parts.offset != 0.0) {
+  if (parts.offset != 0.0)
     throw UnitError(in_quotes(unit) + " is not a plain multiple of an SI unit, its zero is shifted; use K instead");
-  }
   return parts.scale;
 }
 
@@ -344,9 +341,8 @@ double Units::to_si(std::string_view quantity, std::string_view wanted, std::str
     throw UnitError("in " + in_quotes(quantity) + ": " + error.what() + wants);
   }
   if (parts.dimension != dimension) throw UnitError(in_quotes(quantity) + " is " + kind_of(parts.dimension) + wants);
-  if (parts.offset != 0.0 && trimmed(wanted) != "K") {
+  if (parts.offset != 0.0 && trimmed(wanted) != "K")
     throw UnitError(in_quotes(quantity) + " is a temperature with a shifted zero" + wants);
-  }
   const double si = value * parts.scale + parts.offset;
   if (!std::isfinite(si)) throw UnitError(in_quotes(quantity) + " is beyond the range of numbers" + wants);
   return si;

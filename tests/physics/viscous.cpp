@@ -147,7 +147,8 @@ TEST_CASE("the viscous membrane of a tumbling cell never gives the flow more tha
   for (long step = 0; step < steps; ++step) {
     bench.step(1);
     const std::vector<double> after = lengths();
-    const std::vector<double>& tension = find_state(m.state, 0, "rate_tension")->value;
+    REQUIRE(m.state.at(0).name == "rate_tension");
+    const std::vector<double>& tension = m.state[0].value;
     double power = 0;
     for (std::size_t i = 0; i < after.size(); ++i) power += tension[i] * (after[i] - before[i]);
     before = after;

@@ -4,14 +4,12 @@
 #include <cctype>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <iostream>
 #include <sstream>
 #include <system_error>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "json/schema.hpp"
 #include "program.hpp"
 #include "terminal.hpp"
 #include "units/units.hpp"
@@ -31,9 +29,8 @@ options::options_description named(const options::options_description& all,
     bool by_place = false;
     // A command may take any number of arguments by place, but has no more names for them than options.
     const auto places = std::min<std::size_t>(positional.max_total_count(), all.options().size());
-    for (unsigned place = 0; place < places; ++place) {
+    for (unsigned place = 0; place < places; ++place)
       by_place = by_place || positional.name_for_position(place) == option->long_name();
-    }
     if (!by_place) result.add(option);
   }
   return result;

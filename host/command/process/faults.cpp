@@ -56,13 +56,11 @@ void say(std::initializer_list<const char*> parts) {
     // Where all ranks come to the same end the launcher ends this one meanwhile, and there is one message.
     timespec while_first_speaks{.tv_sec = 2, .tv_nsec = 0};
     if (::nanosleep(&while_first_speaks, nullptr) != 0) return;
-    for (const char* part : {speaker, ": "}) {
+    for (const char* part : {speaker, ": "})
       if (::write(STDERR_FILENO, part, std::strlen(part)) < 0) return;
-    }
   }
-  for (const char* part : parts) {
+  for (const char* part : parts)
     if (::write(STDERR_FILENO, part, std::strlen(part)) < 0) break;
-  }
 }
 
 constexpr const char* kept = "\n  what is on disk is whole, and a run can go on from its last checkpoint (--resume)\n";
@@ -93,14 +91,12 @@ void on_fatal_signal(int signal, siginfo_t* info, void*) {
   const bool without_memory = errno == ENOMEM;
   const bool sent = info->si_code <= 0;  // by a process, and not by what the processor was doing
   const bool from_without = sent && info->si_pid != ::getpid();
-  if (const ForeignCall* call = ForeignCall::current(); call != nullptr && !from_without) {
+  if (const ForeignCall* call = ForeignCall::current(); call != nullptr && !from_without)
     accuse(*call, deed_of(signal));
-  }
   if (without_memory && !from_without) regret_lack_of_memory();
   if (!others_watch && !from_without) regret_crash();
-  for (std::size_t k = 0; k < fatal_signals.size(); ++k) {
+  for (std::size_t k = 0; k < fatal_signals.size(); ++k)
     if (fatal_signals[k] == signal) sigaction(signal, &handlers_before[k], nullptr);
-  }
   // A fault happens again when this returns, and then meets what was there before. A signal that was sent does not.
   if (sent) ::raise(signal);
 }
@@ -134,9 +130,7 @@ void name_culprits() {
   struct sigaction action {};
   action.sa_sigaction = on_fatal_signal;
   action.sa_flags = SA_SIGINFO | SA_ONSTACK;
-  for (std::size_t k = 0; k < fatal_signals.size(); ++k) {
-    sigaction(fatal_signals[k], &action, &handlers_before[k]);
-  }
+  for (std::size_t k = 0; k < fatal_signals.size(); ++k) sigaction(fatal_signals[k], &action, &handlers_before[k]);
   std::atexit(on_end);
   std::at_quick_exit(on_end);
 }

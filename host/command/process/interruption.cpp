@@ -61,17 +61,15 @@ const std::atomic<bool>& listen_for_interruption(const TimeLimit& limit) {
     itimerval timer{};
     timer.it_value.tv_sec = static_cast<time_t>(seconds);
     timer.it_value.tv_usec = std::lround((seconds - std::floor(seconds)) * 999999);
-    if (setitimer(ITIMER_REAL, &timer, nullptr) != 0) {
+    if (setitimer(ITIMER_REAL, &timer, nullptr) != 0)
       throw Error(Cause::input_output, std::string("--max-time: the system has no timer: ") + std::strerror(errno));
-    }
   }
   return interruption_asked;
 }
 
 std::string interruption_cause() {
-  for (const CauseOfEnd& cause : causes) {
+  for (const CauseOfEnd& cause : causes)
     if (cause.signal == first_signal) return cause.name;
-  }
   return "a signal to another rank";
 }
 

@@ -8,9 +8,7 @@
 #include <new>
 #include <rouleau/dispatch.hpp>
 #include <string_view>
-#include <vector>
 
-#include "base/error.hpp"
 #include "base/foreign_call.hpp"
 #include "base/synonyms.hpp"
 #include "base/text.hpp"
@@ -27,23 +25,14 @@ std::vector<std::string> known_options;
 /// Empty where the command has none.
 std::string option_for(Way way) {
   const auto first_of = [](std::initializer_list<const char*> names) -> std::string {
-    for (const char* name : names) {
+    for (const char* name : names)
       if (std::find(known_options.begin(), known_options.end(), name) != known_options.end())
         return std::string("--") + name;
-    }
     return {};
   };
-  switch (way) {
-    case Way::elsewhere:
-      return first_of({"out", "dir"});
-    case Way::anew:
-      return first_of({"overwrite"});
-    case Way::resume:
-      return first_of({"resume"});
-    case Way::accept:
-      return first_of({"force"});
-  }
-  return {};
+  if (way == Way::elsewhere) return first_of({"out", "dir"});
+  if (way == Way::anew) return first_of({"overwrite"});
+  return first_of({way == Way::resume ? "resume" : "force"});
 }
 
 Error for_terminal(const Error& error) {
@@ -78,11 +67,10 @@ nlohmann::json as_json(const Error& error) {
 /// One line for programs that start this one.
 int fail_in_json(const Error& error, int code) {
   nlohmann::json faults = nlohmann::json::array();
-  if (const auto* several = dynamic_cast<const SeveralFaults*>(&error)) {
+  if (const auto* several = dynamic_cast<const SeveralFaults*>(&error))
     for (const Error& fault : several->faults()) faults.push_back(as_json(fault));
-  } else {
+  else
     faults.push_back(as_json(error));
-  }
   nlohmann::json line = {{"faults", faults}, {"exit_code", code}};
   Crew* const crew = Crew::present();
   if (crew != nullptr && !crew->first()) line["rank"] = crew->name();
@@ -99,15 +87,8 @@ bool programs_read_errors() {
 }  // namespace
 
 int exit_code_of(Cause cause) {
-  switch (cause) {
-    case Cause::bad_input:
-      return exit_code::bad_input;
-    case Cause::plugin_refused:
-      return exit_code::plugin_refused;
-    case Cause::input_output:
-      break;
-  }
-  return exit_code::input_output;
+  if (cause == Cause::bad_input) return exit_code::bad_input;
+  return cause == Cause::plugin_refused ? exit_code::plugin_refused : exit_code::input_output;
 }
 
 std::string in_options(const Remedy& remedy) {

@@ -9,7 +9,6 @@
 #include <cstdlib>
 #include <iostream>
 #include <streambuf>
-#include <string>
 #include <string_view>
 
 #include "base/text.hpp"

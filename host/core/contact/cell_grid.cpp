@@ -40,13 +40,11 @@ void CellGrid<D>::for_around(const Axis& axis, int bin, Function function) {
     for (int k = 0; k < axis.count; ++k) function(k);
     return;
   }
-  for (int k = bin - 1; k <= bin + 1; ++k) {
-    if (axis.periodic) {
+  for (int k = bin - 1; k <= bin + 1; ++k)
+    if (axis.periodic)
       function((k + axis.count) % axis.count);
-    } else if (k >= 0 && k < axis.count) {
+    else if (k >= 0 && k < axis.count)
       function(k);
-    }
-  }
 }
 
 template <int D>
@@ -79,9 +77,8 @@ CellGrid<D>::CellGrid(const std::vector<BoundingBox<D>>& boxes, double reach, co
   for (std::size_t k = 1; k < begin_.size(); ++k) begin_[k] += begin_[k - 1];
   cells_.resize(static_cast<std::size_t>(begin_.back()));
   std::vector<int> next(begin_.begin(), begin_.end() - 1);
-  for (std::size_t c = 0; c < boxes.size(); ++c) {
+  for (std::size_t c = 0; c < boxes.size(); ++c)
     if (bin_[c] >= 0) cells_[next[bin_[c]]++] = static_cast<int>(c);
-  }
 }
 
 template <int D>

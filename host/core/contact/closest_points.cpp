@@ -38,9 +38,8 @@ void ClosestPoints::resize(int count) {
   const auto size = static_cast<std::size_t>(padded(count));
   if (square.size() >= size) return;
   for (auto& numbers : corner) numbers.resize(size);
-  for (auto* vectors : {&place, &weight, &away}) {
+  for (auto* vectors : {&place, &weight, &away})
     for (auto& numbers : *vectors) numbers.resize(size);
-  }
   square.resize(size);
 }
 

@@ -1,7 +1,6 @@
 // What interactions are made of in two dimensions and in three: closest points, and how reactions are kept.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "core/membrane/membranes.hpp"

@@ -1,7 +1,6 @@
 #include "interactions.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "core/domain/exact_sum.hpp"
@@ -169,10 +168,9 @@ Range Interactions<2>::choose(std::size_t law, int cell, const Membranes& membra
     return piece;
   }
   const std::vector<NeighbourList::Pair>& pairs = contacts_.neighbours().list(cell).pairs;
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
+  for (std::size_t p = 0; p < pairs.size(); ++p)
     if (acts_between(interactions_[law], own.type, membranes.cells[pairs[p].other].type))
       take(list.ranges[p], pairs[p].other, pairs[p].shift);
-  }
   return piece;
 }
 

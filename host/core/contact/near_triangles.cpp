@@ -40,9 +40,8 @@ void NearTriangles::choose(const Eigen::AlignedBox3d& box) {
   for (Image& image : images_) {
     image.near.clear();
     if (!image.part.reached.intersects(box)) continue;
-    for (std::size_t p = image.part.begin; p < image.part.end; ++p) {
+    for (std::size_t p = image.part.begin; p < image.part.end; ++p)
       if (patches_[p].reached.intersects(box)) image.near.push_back(patches_[p]);
-    }
   }
 }
 

@@ -48,9 +48,8 @@ struct Candidates {
       }
       const double limit = min(std::sqrt(least(nearest)) + 4 * t.skin, t.cutoff + 2 * t.skin);
       const S limit_square = limit * limit * (1 + 1e-12);  // room for rounding
-      for (int k = 0; k < t.segments; k += S::size) {
+      for (int k = 0; k < t.segments; k += S::size)
         min(S::load(t.excess + k), S::load(square + k) - limit_square).store(t.excess + k);
-      }
     }
   }
 };
@@ -163,11 +162,10 @@ void NeighbourList::list_candidates(const Membranes& membranes, int cell, Pair& 
     for (int k = 0; k < other.count; ++k) {
       if (!(workspace.excess[k] <= 0)) continue;
       // Few long runs cost less than many short ones.
-      if (static_cast<int>(list.runs.size()) > run_begin && k - list.runs.back().end < bridged) {
+      if (static_cast<int>(list.runs.size()) > run_begin && k - list.runs.back().end < bridged)
         list.runs.back().end = k + 1;
-      } else {
+      else
         list.runs.push_back({k, k + 1});
-      }
     }
     const auto run_end = static_cast<int>(list.runs.size());
     if (run_end > run_begin) list.groups.push_back({first, run_begin, run_end});

@@ -5,13 +5,59 @@
 #include <vector>
 
 #include "base/worker.hpp"
-#include "contact_list.hpp"
+#include "contact_law.hpp"
 #include "core/membrane/membranes.hpp"
 #include "neighbour_list.hpp"
 #include "segment_table.hpp"
-#include "self_contacts.hpp"
 
 namespace rouleau::core {
+
+/// In structure of arrays; entries [begin, end) of `ranges[p]` belong to the cell's pair p (NeighbourList), those of
+/// `within` are with the cell itself. Node X of the cell, closest point P = (1 - along) X_j + along X_j+1 on segment j
+/// of the other cell's image. The distance is |X - P|, at least `least_distance`.
+struct ContactList : ContactValues {
+  std::vector<int> node;     ///< index in Membranes
+  std::vector<int> segment;  ///< index in Membranes of the other cell's segment j, its first node
+  std::vector<double> along;
+  /// (X - P) / |X - P|; outward normal of the segment where X = P. Of those within: X - P.
+  std::vector<double> direction_x, direction_y;
+  std::vector<Range> ranges;
+  Range within{0, 0};
+  int count = 0;  ///< arrays may be longer
+
+  void make_room(std::size_t pairs, std::size_t contacts) {
+    ranges.resize(pairs);
+    if (contacts <= node.size()) return;
+    for (auto* values : {&node, &segment}) values->resize(contacts);
+    for (auto* values : {&along, &distance, &direction_x, &direction_y}) values->resize(contacts);
+  }
+};
+
+/// Of each node of a cell the closest point of those segments of its own that are at least pi/2 cutoffs away along the
+/// outline at rest (half a circle that is a cutoff wide), as SelfReach has it in three dimensions. Which segments these
+/// are never changes, so that forces are the exact gradient. A flat membrane, and a round one wider than the cutoff, do
+/// nothing to themselves (docs: physics, interaction).
+class SelfContacts {
+ public:
+  /// `cutoffs`: of each type; 0: it does not touch itself.
+  SelfContacts(const Membranes& membranes, const std::vector<double>& cutoffs);
+
+  /// Whether cells of a type touch themselves.
+  [[nodiscard]] bool acts_on(int type) const { return types_[type].cutoff > 0; }
+  /// Appends the contacts of a cell with itself to a list that has room for one of each node.
+  void append(const CellRange& cell, const Membranes& membranes, ContactList& list) const;
+
+ private:
+  /// Of a node: the segments that it may touch are [begin, end), counted on past the last one to the first again.
+  struct Reach {
+    int begin, end;
+  };
+  struct Type {
+    double cutoff;
+    std::vector<Reach> reach;  ///< of the nodes of a cell
+  };
+  std::vector<Type> types_;
+};
 
 /// Exact closest points of all pairs within the cutoffs.
 class SegmentContacts {

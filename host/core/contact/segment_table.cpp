@@ -1,6 +1,5 @@
 #include "segment_table.hpp"
 
-#include <algorithm>
 #include <rouleau/dispatch.hpp>
 
 namespace rouleau::core {

@@ -45,10 +45,9 @@ std::optional<SurfacePatches::Point> SurfacePatches::closest(const Vec<3>& place
   for (const Near& patch : near_) {
     if (!may_hold(patch.square, best.square)) break;
     const int begin = patch.triangles * size, some = std::min(size, count - begin);
-    for (int k = 0; k < some; ++k) {
+    for (int k = 0; k < some; ++k)
       for (int c = 0; c < 3; ++c)
         points_.corner[c][k] = first + triangles[begin + k][c], points_.place[c][k] = place[c];
-    }
     points_.find(some, surfaces_.positions());
     for (int k = 0; k < some; ++k) {
       const double square = points_.square[k];
@@ -126,10 +125,9 @@ void SurfacePatches::look(double& square, int from, int nodes, int to, int patch
   for (int i = first_node; i < end_node; ++i) {
     const Vec<3> place = places[i] - moved;
     if (!may_hold(cells_[to].triangles[patch].squaredExteriorDistance(place), square)) continue;
-    for (int t = begin; t < end; ++t, ++count) {
+    for (int t = begin; t < end; ++t, ++count)
       for (int c = 0; c < 3; ++c)
         points_.corner[c][count] = first + triangles[t][c], points_.place[c][count] = place[c];
-    }
   }
   points_.find(count, surfaces_.positions());
   for (int k = 0; k < count; ++k) square = points_.square[k] < square ? points_.square[k] : square;

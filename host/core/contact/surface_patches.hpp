@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include "cell_grid.hpp"
@@ -44,9 +43,8 @@ double TriangleContacts::cutoff(const Surfaces& surfaces, int cell, int other, b
 TriangleContacts TriangleContacts::within(double reach, const Surfaces& surfaces, const Domain<3>& domain) {
   const int types = static_cast<int>(surfaces.types.size());
   Cutoffs cutoffs(types);
-  for (int a = 0; a < types; ++a) {
+  for (int a = 0; a < types; ++a)
     for (int b = 0; b <= a; ++b) cutoffs.raise(a, b, reach);
-  }
   TriangleContacts contacts(surfaces, std::move(cutoffs), domain);
   contacts.of_all_ = true;
   contacts.measure({}, surfaces);
@@ -224,10 +222,9 @@ void TriangleContacts::look_at_next(const Surfaces& surfaces, CandidateList& lis
       search.square = closer ? square : search.square;
       search.closest = closer ? triangle : search.closest;
     }
-    if (closest >= 0) {
+    if (closest >= 0)
       for (int c = 0; c < 3; ++c)
         search.weight[c] = points.weight[c][closest], search.away[c] = points.away[c][closest];
-    }
     search.looked = search.looked < 0 ? 0 : search.looked + static_cast<int>(candidates.size());
     list.searching[left] = number;
     left += list.nearest_from(group, search.looked) - path - slack > std::sqrt(search.square) ? 0 : 1;

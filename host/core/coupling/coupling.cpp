@@ -94,9 +94,7 @@ void Coupling<T, D>::spread(Range rows, const Cells<D>& cells, const Vectors& fo
   const Box<D>& block = domain_.block;
   SpreadTask<T, D> task{};
   describe(task, force);
-  for (int k = 0; k < D; ++k) {
-    task.origin[k] = force[k].row(std::array<int, D - 1>{}) - first_of_block(force[k]);
-  }
+  for (int k = 0; k < D; ++k) task.origin[k] = force[k].row(std::array<int, D - 1>{}) - first_of_block(force[k]);
   task.domain = &domain_;
   task.row_begin = rows.begin, task.row_end = rows.end;
   // Where these rows lie along the last axis.
@@ -163,9 +161,8 @@ void Coupling<T, D>::interpolate(Worker worker, Cells<D>& cells, const VectorFie
     if (!cells.reaches(c) || !cells.is(c, whose)) continue;
     task.begin = cells.cells[c].first, task.end = cells.cells[c].end();
     loops_->interpolate(&task);
-    for (int i = task.begin; i < task.end && reach_ && beside_wall_[c] != 0; ++i) {
+    for (int i = task.begin; i < task.end && reach_ && beside_wall_[c] != 0; ++i)
       if (domain_.block.contains(base(i))) complete(i, task.velocity);
-    }
   }
 }
 
@@ -181,11 +178,10 @@ WallForces<D> Coupling<T, D>::wall_share(const Cells<D>& cells, const Vectors& f
       std::array<double, D> of_node;
       std::array<int, D> first;
       for (int k = 0; k < D; ++k) of_node[k] = force[k][i], first[k] = of_stencil[k].first;
-      if (reach_ && reach_->touches(first)) {
+      if (reach_ && reach_->touches(first))
         reach_->add_share(of_node, of_stencil, sums);
-      } else {
+      else
         add_wall_share<D>(of_node, of_stencil, domain_, sums);
-      }
     }
   }
   return sums.total(ranks);
@@ -193,9 +189,8 @@ WallForces<D> Coupling<T, D>::wall_share(const Cells<D>& cells, const Vectors& f
 
 template <class T, int D>
 bool Coupling<T, D>::any_escaped(const Cells<D>& cells) const {
-  for (const int c : cells.known_cells()) {
+  for (const int c : cells.known_cells())
     if (bases_[c].lowest == outside) return true;
-  }
   return false;
 }
 

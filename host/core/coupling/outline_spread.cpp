@@ -22,9 +22,8 @@ struct Spread {
     // nodes from four parts of the cell take turns.
     constexpr int parts = 4;
     const int length = (t.end - t.begin) / parts;
-    for (int i = t.begin; i < t.begin + length; ++i) {
+    for (int i = t.begin; i < t.begin + length; ++i)
       for (int part = 0; part < parts; ++part) spread(t, inside, i + part * length);
-    }
     for (int i = t.begin + parts * length; i < t.end; ++i) spread(t, inside, i);
   }
 
@@ -52,9 +51,8 @@ struct Spread {
     if (row >= inside.row_begin && row + points <= inside.row_end) {
       for (int k = 0; k < points; ++k) add(t, fx, fy, wy.weight[k], at + k * t.stride[1]);
     } else {
-      for (int k = 0; k < points; ++k) {
+      for (int k = 0; k < points; ++k)
         if (row + k >= inside.row_begin && row + k < inside.row_end) add(t, fx, fy, wy.weight[k], at + k * t.stride[1]);
-      }
     }
   }
   ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T, 2>& t, const Forces& fx, const Forces& fy,

@@ -9,11 +9,10 @@ template <class T, class Kernel>
 struct InterpolateOutline {
   template <int register_bytes>
   ROULEAU_ALWAYS_INLINE static void run(const InterpolateTask<T, 2>* task) {
-    if (task->block == nullptr) {
+    if (task->block == nullptr)
       run_all<false>(*task);
-    } else {
+    else
       run_all<true>(*task);
-    }
   }
 
  private:
@@ -23,9 +22,8 @@ struct InterpolateOutline {
   template <bool in_block>
   ROULEAU_ALWAYS_INLINE static void run_all(const InterpolateTask<T, 2>& task) {
     const InterpolateTask<T, 2> t = task;
-    if (in_block && t.fetch_ahead) {  // a call for each cell
+    if (in_block && t.fetch_ahead)  // a call for each cell
       for (int first = t.begin; first < std::min(t.begin + lead, t.end); ++first) fetch<in_block>(t, first);
-    }
     int i = t.begin;
     for (; i + 2 <= t.end; i += 2) {
       if (t.fetch_ahead && i + lead + 2 <= t.end) {

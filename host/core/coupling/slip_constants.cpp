@@ -1,7 +1,6 @@
 #include "slip_constants.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 

@@ -125,16 +125,14 @@ SlipCorrection::SlipCorrection(const Membranes& membranes, std::vector<Type> typ
                                                   type.constants.slip / viscosity, stiffness));
   }
   for (auto* values : {&tangent_x_, &tangent_y_, &inverse_chord_, &touch_x_, &touch_y_, &force_x_, &force_y_, &slip_,
-                       &scratch_x_, &scratch_y_}) {
+                       &scratch_x_, &scratch_y_})
     *values = PagedArray<double>(membranes.position[0].size());
-  }
 }
 
 void SlipCorrection::forget(std::span<const Range> nodes) {
   for (auto* values : {&tangent_x_, &tangent_y_, &inverse_chord_, &touch_x_, &touch_y_, &force_x_, &force_y_, &slip_,
-                       &scratch_x_, &scratch_y_}) {
+                       &scratch_x_, &scratch_y_})
     release(*values, nodes);
-  }
 }
 
 template <class Loop>

@@ -53,11 +53,10 @@ class SpreadNode {
     for (int m = 0; m < points; ++m) {
       const std::ptrdiff_t at = corner - before + m * t.stride[2];
       const int row = first + height * m;
-      if (row >= t.row_begin && row + points <= t.row_end) {
+      if (row >= t.row_begin && row + points <= t.row_end)
         add<true>(t, weights, m, force, at, row);
-      } else if (row + points > t.row_begin && row < t.row_end) {
+      else if (row + points > t.row_begin && row < t.row_end)
         add<false>(t, weights, m, force, at, row);
-      }
     }
   }
 
@@ -78,9 +77,8 @@ class SpreadNode {
   ROULEAU_ALWAYS_INLINE static void add(const SpreadTask<T, 3>& t, const Weights& weights, int m,
                                         const std::array<Forces, 3>& force, std::ptrdiff_t at, int row) {
 #pragma GCC unroll 6
-    for (int l = 0; l < points; ++l, at += t.stride[1]) {
+    for (int l = 0; l < points; ++l, at += t.stride[1])
       if (whole || (row + l >= t.row_begin && row + l < t.row_end)) add(t, weights.of_row(m, l), force, at);
-    }
   }
 
   /// What a stencil's points along an axis are images of.
@@ -126,10 +124,9 @@ class SpreadNode {
       along[part][node - first[part]] += along_x.sign[k] * weights.along_x.at(k);
       reached[part] = true;
     }
-    for (int part = 0; part < 2; ++part) {
+    for (int part = 0; part < 2; ++part)
       if (reached[part])
         add_images(t, planes, weights, along_y, along_z, forces(t, i, Forces::load(along[part])), first[part]);
-    }
   }
   ROULEAU_ALWAYS_INLINE static void add_images(const SpreadTask<T, 3>& t, Range planes, const Weights& weights,
                                                const Images& along_y, const Images& along_z,

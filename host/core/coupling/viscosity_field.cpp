@@ -2,14 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "core/fluid/layers.hpp"
 #include "core/membrane/rounding.hpp"
-#include "disjoint.hpp"
 
 namespace rouleau::core {
 
 namespace {
+
+/// Adds an interval {begin, end} to others that do not touch each other; those that it touches become one with it.
+template <class Interval>
+void add_disjoint(std::vector<Interval>& row, Interval added) {
+  for (std::size_t k = 0; k < row.size();) {
+    if (row[k].end < added.begin || added.end < row[k].begin) {
+      ++k;
+      continue;
+    }
+    added = {std::min(added.begin, row[k].begin), std::max(added.end, row[k].end)};
+    row[k] = row.back();
+    row.pop_back();
+  }
+  row.push_back(added);
+}
 
 /// Nodes may move this far before the next update; the marks allow for a whole spacing.
 constexpr double displacement_limit = 0.1;
@@ -155,11 +170,10 @@ void ViscosityField<T, D>::update(Worker worker, const Cells<D>& cells, Field<T,
     set_rates(cells, own, relaxation_rate);
   }
   mask.renew(own.begin, own.end, [&](auto mark) {
-    for (const int c : cells.known_cells()) {
+    for (const int c : cells.known_cells())
       if (cells.reaches(c))
         for_rows(reach_[c].reached, own,
                  [&](int row, Interval columns, int) { mark(row, columns.begin, columns.end); });
-    }
   });
 }
 
@@ -195,10 +209,9 @@ void ViscosityField<T, D>::set_rates(const Cells<D>& cells, Range own, Field<T, 
   const auto averaged = [=](double viscosity) { return harmonic ? 1 / viscosity : viscosity; };
   const auto row_at = [&](int row) { return rate.row(row_of(domain_.block, row)); };
   // The field holds the sum over cells of (mu_inside - mu_row) I, or that of 1/mu, until every cell has been added.
-  for (int row = own.begin; row < own.end; ++row) {
+  for (int row = own.begin; row < own.end; ++row)
     for (const Interval& interval : changed_[row])
       std::fill(row_at(row) + interval.begin, row_at(row) + interval.end, T(0));
-  }
   for (const int c : cells.known_cells()) {
     const int type = cells.cells[c].type;
     if (!differs(type) || !cells.reaches(c)) continue;
@@ -225,13 +238,11 @@ void ViscosityField<T, D>::set_rates(const Cells<D>& cells, Range own, Field<T, 
     const T plain = static_cast<T>(rate_of_layer(plain_rate_, viscosity)), of_row = static_cast<T>(averaged(viscosity));
     T* to = row_at(row);
     for (const Interval& interval : changed_[row]) {
-      for (int x = interval.begin; x < interval.end; ++x) {
-        if (to[x] == T(0)) {
+      for (int x = interval.begin; x < interval.end; ++x)
+        if (to[x] == T(0))
           to[x] = plain;
-        } else {
+        else
           to[x] = T(1) / (T(0.5) + (harmonic ? suspending / (of_row + to[x]) : suspending * (of_row + to[x])));
-        }
-      }
     }
   }
 }

@@ -44,9 +44,8 @@ void cover(const Surfaces& surfaces, int cell, CellFraction<3>& fraction) {
     int &begin = fraction.begin[r], &end = fraction.end[r];
     end = std::max(begin, end);
     for (int i = end - 2; i >= begin; --i) row[i] += row[i + 1];
-    for (int i = begin; i < end; ++i) {
+    for (int i = begin; i < end; ++i)
       if (std::abs(row[i]) < 1e-12) row[i] = 0;  // what enters and leaves cancels up to rounding
-    }
     while (begin < end && row[begin] == 0) ++begin;
     while (end > begin && row[end - 1] == 0) --end;
   }

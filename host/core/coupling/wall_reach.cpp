@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "core/fluid/walls.hpp"
 #include "core/geometry/formulas.hpp"
@@ -86,10 +85,9 @@ template <int D>
 Vec<D> WallReach<D>::carried(const Stencil& stencil, double factor) const {
   const double of_fluid = sums(stencil, [](std::size_t) { return 1; }).second;
   Vec<D> middle = Vec<D>::Zero();
-  for (int k = 0; k < D; ++k) {
+  for (int k = 0; k < D; ++k)
     for (int i = 0; i < points_; ++i)
       middle[k] += stencil[k].weight[static_cast<std::size_t>(i)] * (stencil[k].first + i);
-  }
   return (1 - factor * of_fluid) * time_ * region_->velocity(middle);
 }
 
@@ -100,9 +98,8 @@ void WallReach<D>::add_share(const std::array<double, D>& force, const Stencil& 
   double lower = 0, upper = 0, all = 0;
   for_rows(stencil, [&](const Node& row, std::size_t place, double of_row) {
     double sign = 1;
-    for (int axis = 1; axis < D; ++axis) {
+    for (int axis = 1; axis < D; ++axis)
       if (domain_.wrapped(axis, row[axis]) < 0) sign = -sign;
-    }
     for (int x = 0; x < points_; ++x) {
       const std::size_t at = static_cast<std::size_t>(x);
       const double weight = of_row * stencil[0].weight[at];

@@ -20,13 +20,11 @@ void RowPieces<D>::add_runs(const Row& row) {
   }
   std::sort(near.begin(), near.end(), [](const Run& a, const Run& b) { return a.begin < b.begin; });
   const std::size_t first = runs_.size();
-  for (const Run& run : near) {
-    if (runs_.size() > first && run.begin <= runs_.back().end) {
+  for (const Run& run : near)
+    if (runs_.size() > first && run.begin <= runs_.back().end)
       runs_.back().end = std::max(runs_.back().end, run.end);
-    } else {
+    else
       runs_.push_back(run);
-    }
-  }
   for (std::size_t n = first; n < runs_.size(); ++n) {
     runs_[n].start = count_ - runs_[n].begin;
     count_ += runs_[n].end - runs_[n].begin;
@@ -44,9 +42,8 @@ std::size_t RowPieces<D>::number_of(const Row& row) const {
 template <int D>
 auto RowPieces<D>::find(int x, const Row& row) const -> const Run* {
   const std::size_t number = number_of(row);
-  for (std::size_t n = first_run_[number]; n < first_run_[number + 1]; ++n) {
+  for (std::size_t n = first_run_[number]; n < first_run_[number + 1]; ++n)
     if (x < runs_[n].end) return x < runs_[n].begin ? nullptr : &runs_[n];
-  }
   return nullptr;
 }
 

@@ -42,9 +42,8 @@ struct FindVelocity {
     for (S& component : u) component = S(0.0);
     Set::for_each_velocity([&](auto q) {
       const S f = load_wide<T, S>(t.in[q] + x);
-      for (int k = 0; k < Set::dimension; ++k) {
+      for (int k = 0; k < Set::dimension; ++k)
         if (Set::velocity[q][k] != 0) u[k] = Set::velocity[q][k] > 0 ? u[k] + f : u[k] - f;
-      }
     });
     for (int k = 0; k < Set::dimension; ++k) {
       const S force = t.force[k] != nullptr ? load_wide<T, S>(t.force[k] + x) : S(t.body_force[k]);
@@ -145,9 +144,8 @@ void find_velocities(const FluidState<T, Set>& state, int i, const std::array<do
     function(&task);
   });
   const int nx = state.nx();
-  for (double* component : u) {
+  for (double* component : u)
     if (state.setting.domain.wraps(0)) component[-1] = component[nx - 1], component[nx] = component[0];
-  }
 }
 
 /// The rows of velocities around a row.
@@ -213,11 +211,10 @@ void EnergySum<T, Set>::exchange_edges() {
     find_velocities(state_, i, u);
     for (int k = 0; k < dimension; ++k) {
       double* const to = values[k];
-      if (whole) {
+      if (whole)
         std::copy_n(u[k], nx, to + nodes.place(0, row));
-      } else {
+      else
         for (const int x : {0, nx - 1}) to[nodes.place(x, row)] = u[k][x];
-      }
     }
   }
   halo_->exchange_edges(values);
@@ -237,11 +234,10 @@ void EnergySum<T, Set>::find_row(int from, const Row& row) {
   if (from >= 0) find_velocities(state_, from, u);
   for (int k = 0; halo_ != nullptr && k < dimension; ++k) {
     const auto other = [&](int x) { return edge_[k][static_cast<std::size_t>(halo_->edges().place(x, row))]; };
-    if (from < 0) {
+    if (from < 0)
       for (int x = -1; x <= nx; ++x) u[k][x] = other(x);
-    } else if (!state_.setting.domain.wraps(0)) {
+    else if (!state_.setting.domain.wraps(0))
       u[k][-1] = other(-1), u[k][nx] = other(nx);
-    }
   }
   for (double* const component : u) {
     if (state_.setting.domain.wall_below(0)) component[-1] = component[0];
@@ -281,9 +277,8 @@ void EnergySum<T, Set>::add(int i) {
     Task part = task;
     part.count = end - begin;
     for (int q = 0; q < velocity_count; ++q) part.in[q] = in[q] + begin;
-    for (auto& beside : part.velocity) {
+    for (auto& beside : part.velocity)
       for (const double*& component : beside) component += component != nullptr ? begin : 0;
-    }
     function(&part);
   });
   // A link into a wall counts with what left, too; beyond plane walls that has been taken for what came back, and for

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <type_traits>
 
 #include "fluid_observers.hpp"
 #include "periodic.hpp"
@@ -13,11 +12,10 @@ namespace rouleau::core {
 template <class T, class Set>
 Fluid<T, Set>::Fluid(const FluidSetting<dimension>& setting, CollisionOperator collision, const Ranks<dimension>& ranks)
     : Any(setting, ranks), collision_(std::move(collision)), state_(setting_) {
-  if constexpr (std::is_same_v<T, double>) {
+  if constexpr (std::is_same_v<T, double>)
     collide_ = collision_.table->collide_f64;
-  } else {
+  else
     collide_ = collision_.table->collide_f32;
-  }
   if (driven()) fill_body_force_rows();
   if (ranks.several()) halo_ = std::make_unique<FluidHalo<T, Set>>(state_, ranks_);
 }
@@ -48,11 +46,10 @@ void Fluid<T, Set>::set_drive(const WallVelocity& walls, double body_force_x) {
 template <class T, class Set>
 void Fluid<T, Set>::clear_force(Range rows) {
   const auto set = [](T* row, const MaskSpan& span, T value) {
-    if (value == T(0)) {
+    if (value == T(0))
       std::memset(row + span.begin, 0, sizeof(T) * static_cast<std::size_t>(span.end - span.begin));
-    } else {
+    else
       std::fill(row + span.begin, row + span.end, value);
-    }
   };
   for (int i = rows.begin; i < rows.end; ++i) {
     state_.mask.for_spans(i, [&](const MaskSpan& span) {
@@ -78,9 +75,8 @@ void Fluid<T, Set>::collide(const RowPiece& piece, const Row& row, Call& call) {
     move_to(span.begin);
     block.count = static_cast<std::uint32_t>(span.end - span.begin);
     const bool active = state_.has_force(span);
-    if (active) {
+    if (active)
       for (int k = 0; k < dimension; ++k) call.force[k] = state_.force[k].row(row) + span.begin;
-    }
     block.force = active ? call.force : call.background;
     block.velocity = active ? call.force : nullptr;
     block.relaxation_rate =
@@ -137,11 +133,10 @@ void Fluid<T, Set>::step(Range rows) {
     const Row row = state_.lattice.row(i);
     if (even) receive_row(state_.lattice, row);
     state_.lattice.for_pieces(i, [&](const RowPiece& piece, std::size_t number) {
-      if (k == 0 || state_.links) {
+      if (k == 0 || state_.links)
         state_.lattice.row_pointers(state_.parity, row, piece.begin, call.at.in, call.at.out);
-      } else {
+      else
         state_.lattice.next_row_pointers(state_.parity, last, row, call.at.in, call.at.out);
-      }
       if (fetches && state_.links) {  // the next piece lies beside this one
         const int size = piece.end - piece.begin;
         for (const T* const from : call.at.in) fetch(from + piece.begin + way * size, size);
@@ -154,9 +149,8 @@ void Fluid<T, Set>::step(Range rows) {
     if (state_.links) rest_solid(i, row);
     add_wall_momentum(state_.lattice, i, row, setting_.walls);
     if (even) send_row(state_.lattice, row);
-    if (setting_.membranes && reaches_border(i, row)) {
+    if (setting_.membranes && reaches_border(i, row))
       fill_velocity_halo<T, dimension>(state_.force, row, setting_.domain, setting_.walls);
-    }
   }
 }
 
@@ -183,11 +177,10 @@ void Fluid<T, Set>::set_profile(const std::function<double(double)>& velocity,
     s.gradient[1] = shear_rate(y);
     return s;
   };
-  if constexpr (dimension == 2) {
+  if constexpr (dimension == 2)
     set_state([&](int, int y) { return at(y); });
-  } else {
+  else
     set_state([&](int, int y, int) { return at(y); });
-  }
 }
 
 template <class T, class Set>

@@ -258,9 +258,8 @@ std::vector<double> row_velocities_without_membranes(const FluidState<T, Set>& s
     state.for_fluid(i, [&](int begin, int end, const auto& in) {
       Set::for_each_velocity([&](auto q) {
         constexpr int along = Set::velocity[q][0];
-        if constexpr (along != 0) {
+        if constexpr (along != 0)
           for (int x = begin; x < end; ++x) momentum[x] += along * static_cast<double>(in[q][x]);
-        }
       });
       for (int x = begin; x < end; ++x) sum.add(momentum[x] + (state.links ? of_force : 0));
     });
@@ -353,10 +352,9 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
         const int x = link.x;
         if (link.plane) add_plane(at.in, link.w, x, -1);  // a wall before it takes all
         const double both = static_cast<double>(link.left) + static_cast<double>(at.in[q][x]);
-        for (int k = 0; k < Set::dimension; ++k) {
+        for (int k = 0; k < Set::dimension; ++k)
           if (Set::velocity[q][k] != 0)
             sums.add(Sums::other, k, -Set::velocity[q][k] * (both - (k == open ? of_opening(at.in, link.w, x) : 0)));
-        }
       }
     });
   }

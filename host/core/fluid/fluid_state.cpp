@@ -21,9 +21,8 @@ FluidState<T, Set>::FluidState(const FluidSetting<dimension>& of_fluid)
                   : RowPieces<dimension>()) {
   std::array<int, dimension> size{};
   for (int k = 0; k < dimension; ++k) size[k] = setting.domain.block.size(k);
-  if (setting.membranes) {
+  if (setting.membranes)
     for (int k = 0; k < dimension; ++k) force[k] = Field<T, dimension>(size, k, setting.solid != nullptr);
-  }
   const bool layered = !setting.viscosity_of_rows.empty();
   if (setting.viscosity_contrast || layered) relaxation_rate = Field<T, dimension>(size, 0, setting.solid != nullptr);
   for (int y = 0; layered && y < size[1]; ++y) {
@@ -102,11 +101,10 @@ void FluidState<T, Set>::set(const StateOfNode<dimension>& state) {
       for (int q = 0; q < velocity_count; ++q) slots[q] = lattice.slot(q, row, piece.begin);
       for (int x = piece.begin; x < piece.end; ++x) {
         NodeState<dimension> s;
-        if constexpr (dimension == 2) {
+        if constexpr (dimension == 2)
           s = state(begin[0] + x, begin[1] + row[0]);
-        } else {
+        else
           s = state(begin[0] + x, begin[1] + row[0], begin[2] + row[1]);
-        }
         // Populations hold the momentum without the half force that the velocity includes.
         std::array<double, dimension> momentum;
         for (int k = 0; k < dimension; ++k) momentum[k] = s.velocity[k] - 0.5 * setting.body_force[k];

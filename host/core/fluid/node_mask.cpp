@@ -1,7 +1,5 @@
 #include "node_mask.hpp"
 
-#include <algorithm>
-
 namespace rouleau::core {
 
 NodeMask::NodeMask(const Domain<1>& along_x, int rows)
@@ -56,14 +54,6 @@ void NodeMask::leave_solid_out(int y) {
     }
   }
   if (spans.empty()) spans.push_back({0, 0, false});
-}
-
-double NodeMask::active_fraction() const {
-  long count = 0;
-  for (int y = 0; y < ny_; ++y) {
-    for_spans(y, [&](const MaskSpan& span) { count += span.active ? span.end - span.begin : 0; });
-  }
-  return static_cast<double>(count) / (static_cast<double>(nx_) * ny_);
 }
 
 }  // namespace rouleau::core

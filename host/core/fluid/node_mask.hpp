@@ -62,7 +62,6 @@ class NodeMask {
     const std::vector<MaskSpan>& spans = spans_[y];
     return spans.front().active || spans.back().active;
   }
-  [[nodiscard]] double active_fraction() const;
   /// Calls function(begin, end) for the runs of fluid, or of solid nodes, of row y.
   template <class Function>
   void for_fluid(int y, Function function) const {

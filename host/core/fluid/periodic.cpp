@@ -47,9 +47,8 @@ bool comes_along(const Lattice<T, Set>& lattice, int q, const typename Lattice<T
 /// Whether a row has images in the block's own halo.
 template <class T, class Set>
 bool at_border(const Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row) {
-  for (int k = 1; k < Set::dimension; ++k) {
+  for (int k = 1; k < Set::dimension; ++k)
     if (lattice.wraps(k) && (row[k - 1] == 0 || row[k - 1] == lattice.size(k) - 1)) return true;
-  }
   return false;
 }
 
@@ -69,9 +68,8 @@ void copy_across(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& 
       std::copy(from + first, from + last, lattice.slot(q, out ? across : row, first) + first);
     };
     if (lattice.pieces().all()) return copy(begin, end);
-    for (int x = begin; x < end; ++x) {
+    for (int x = begin; x < end; ++x)
       if (lattice.holds(x, row) && lattice.holds(x, across)) copy(x, x + 1);
-    }
   });
 }
 
@@ -85,31 +83,6 @@ void copy_node(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& ro
     if (wanted(q)) lattice.origin(q)[target] = lattice.origin(q)[source];
   });
 }
-
-}  // namespace
-
-template <class T, class Set>
-void send_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row) {
-  const int nx = lattice.size(0);
-  if (lattice.wraps(0)) {
-    const auto all = [](int) { return true; };
-    copy_node(lattice, row, +1, 0, nx, all);
-    copy_node(lattice, row, -1, nx - 1, -1, all);
-  }
-  copy_across(lattice, row, true);
-}
-
-template <class T, class Set>
-void receive_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row) {
-  const int nx = lattice.size(0);
-  copy_across(lattice, row, false);
-  if (!lattice.wraps(0)) return;
-  const auto comes = [&](int q) { return comes_along(lattice, q, row); };
-  copy_node(lattice, row, +1, nx, 0, comes);
-  copy_node(lattice, row, -1, -1, nx - 1, comes);
-}
-
-namespace {
 
 /// A row of the halo that is made of a row of the block: sum - u if it lies beyond a wall (with another one, sum + u).
 template <int D>
@@ -126,13 +99,12 @@ void write_image(Field<T, D>& field, const std::array<int, D - 1>& row, const Im
   T* const target = field.row(image.row);
   const T sum = static_cast<T>(image.sum);
   const int begin = -width, end = field.size(0) + width;
-  if (image.reversed) {
+  if (image.reversed)
     for (int x = begin; x < end; ++x) target[x] = sum - source[x];
-  } else if (sum != T(0)) {
+  else if (sum != T(0))
     for (int x = begin; x < end; ++x) target[x] = sum + source[x];
-  } else {
+  else
     std::copy(source + begin, source + end, target + begin);
-  }
 }
 
 /// Of a component with these speeds of the walls across y.
@@ -159,6 +131,27 @@ void fill_images(Field<T, D>& field, const std::array<int, D - 1>& row, const Do
 }
 
 }  // namespace
+
+template <class T, class Set>
+void send_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row) {
+  const int nx = lattice.size(0);
+  if (lattice.wraps(0)) {
+    const auto all = [](int) { return true; };
+    copy_node(lattice, row, +1, 0, nx, all);
+    copy_node(lattice, row, -1, nx - 1, -1, all);
+  }
+  copy_across(lattice, row, true);
+}
+
+template <class T, class Set>
+void receive_row(Lattice<T, Set>& lattice, const typename Lattice<T, Set>::Row& row) {
+  const int nx = lattice.size(0);
+  copy_across(lattice, row, false);
+  if (!lattice.wraps(0)) return;
+  const auto comes = [&](int q) { return comes_along(lattice, q, row); };
+  copy_node(lattice, row, +1, nx, 0, comes);
+  copy_node(lattice, row, -1, -1, nx - 1, comes);
+}
 
 template <class T, int D>
 void fill_velocity_halo(VectorField<T, D>& velocity, const std::array<int, D - 1>& row, const Domain<D>& domain,

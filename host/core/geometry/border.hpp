@@ -6,6 +6,7 @@
 
 #include "core/domain/domain.hpp"
 #include "core/domain/vec.hpp"
+#include "region.hpp"
 
 namespace rouleau::core {
 
@@ -30,5 +31,31 @@ Border<D> with_images(Border<D> border, const Domain<D>& domain);
 /// running the other way: none of a closed border.
 template <int D>
 std::vector<Vec<D>> open_sides(const Border<D>& border);
+
+/// Where samples, one spacing apart, change their sign: linear along edges and diagonals of the grid, of second order
+/// in its spacing. Each square is cut into two triangles, each cube into six tetrahedra (Kuhn's), so that borders have
+/// no holes; they end where the grid does. `samples`: the first axis is the fastest; sample 0 lies at the origin. Zero
+/// counts as negative. Throws std::invalid_argument where `samples` is not as long as the grid.
+template <int D>
+Border<D> zero_border(const std::vector<double>& samples, const std::array<int, D>& size);
+
+/// The border of a region in a domain, over one period along periodic axes, else from half a spacing before the first
+/// node to half a spacing behind the last: of second order in the spacing, edges rounded within one. Looks at the
+/// region near its border alone. Corners are those of blocks, which do not share them.
+template <int D>
+Border<D> border_of_region(const Region<D>& region, const Domain<D>& domain);
+
+/// Length or area of a facet.
+template <int D>
+double size_of(const Border<D>& border, const std::array<int, D>& facet) {
+  return border.normal(facet).norm() / (D - 1);
+}
+/// Of a whole border.
+template <int D>
+double size_of(const Border<D>& border) {
+  double sum = 0;
+  for (const std::array<int, D>& facet : border.facets) sum += size_of<D>(border, facet);
+  return sum;
+}
 
 }  // namespace rouleau::core

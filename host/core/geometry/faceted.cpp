@@ -104,13 +104,11 @@ Distance<D> FacetedRegion<D>::distance(const Vec<D>& place) const {
   });
   const auto beyond = [&](int k) { return nearest.weight[k] == 0; };
   Vec<D> normal = normals_[facet];
-  for (int k = 0; k < D; ++k) {
-    if (beyond((k + 1) % D) && beyond((k + D - 1) % D)) {
+  for (int k = 0; k < D; ++k)
+    if (beyond((k + 1) % D) && beyond((k + D - 1) % D))
       normal = corner_normals_[border_.facets[facet][k]];
-    } else if (D == 3 && beyond(k) && !beyond((k + 1) % D) && !beyond((k + 2) % D)) {
+    else if (D == 3 && beyond(k) && !beyond((k + 1) % D) && !beyond((k + 2) % D))
       normal = edge_normals_[facet][k];
-    }
-  }
   const double away = std::sqrt(least), sign = normal.dot(nearest.away) > 0 ? -1 : 1;
   // On the border its normal is all there is.
   constexpr double on_border = 1e-12;

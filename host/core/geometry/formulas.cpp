@@ -94,9 +94,8 @@ RegionPointer<D> box_region(const Vec<D>& lower, const Vec<D>& upper) {
 template <int D>
 RegionPointer<D> between_walls(const Domain<D>& domain) {
   Vec<D> lower = Vec<D>::Constant(-std::numeric_limits<double>::infinity()), upper = -lower;
-  for (int k = 0; k < D; ++k) {
+  for (int k = 0; k < D; ++k)
     if (domain.walled(k)) lower[k] = -0.5, upper[k] = domain.size[k] - 0.5;
-  }
   return box_region<D>(lower, upper);
 }
 

@@ -1,6 +1,5 @@
 #include "region.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

@@ -1,8 +1,6 @@
 // The point of a triangle that is closest to another point.
 #pragma once
 
-#include <array>
-
 #include "core/domain/vec.hpp"
 #include "core/domain/vectors.hpp"
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <utility>
 
 namespace rouleau::core {
 
@@ -65,9 +64,7 @@ void DisplacementWatch::forget(const CellNodes& cells, std::span<const Range> no
 void DisplacementWatch::measure(Worker worker, const CellNodes& nodes) {
   if (agreed_) return;
   const CellNumbers cells = nodes.known_cells(worker);
-  for (const int c : cells) {
-    measure_cell(c, nodes);
-  }
+  for (const int c : cells) measure_cell(c, nodes);
 }
 
 bool DisplacementWatch::measure_own(const CellNodes& nodes) {

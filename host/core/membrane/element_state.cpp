@@ -24,23 +24,15 @@ std::size_t keep_state(std::vector<ElementState>& states, ElementState variable,
   return states.size() - 1;
 }
 
-const ElementState* find_state(const std::vector<ElementState>& states, int cell_type, const std::string& name) {
-  const auto found = std::find_if(states.begin(), states.end(), [&](const ElementState& state) {
-    return state.cell_type == cell_type && state.name == name;
-  });
-  return found != states.end() ? &*found : nullptr;
-}
-
 std::size_t ContactMemory::keep(const ContactVariable& wanted) {
   const auto found = std::find_if(variables.begin(), variables.end(), [&](const ContactVariable& v) {
     return v.potential == wanted.potential && v.name == wanted.name;
   });
   const auto variable = static_cast<std::size_t>(found - variables.begin());
-  if (found == variables.end()) {
+  if (found == variables.end())
     variables.push_back(wanted);
-  } else {
+  else
     change_unit(variable, wanted.unit);
-  }
   return variable;
 }
 

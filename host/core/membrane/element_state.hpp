@@ -65,7 +65,4 @@ struct ContactMemory {
 /// `initial`, where there is none yet. `variable.value` is not used.
 std::size_t keep_state(std::vector<ElementState>& states, ElementState variable, double initial, std::size_t count);
 
-/// The variable of this name and type; null: none. For tests and outputs.
-const ElementState* find_state(const std::vector<ElementState>& states, int cell_type, const std::string& name);
-
 }  // namespace rouleau::core

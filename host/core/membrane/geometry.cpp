@@ -1,8 +1,6 @@
 #include "geometry.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace rouleau::core {
 
@@ -38,15 +36,33 @@ Moments moments(const Membranes& membranes, const CellRange& cell, const Vec<2>&
   return sum;
 }
 
+/// Smallest square distance from a point to an outline with these bounds; `best` if it is not below that.
+double nearest(const Membranes& membranes, const CellRange& cell, const BoundingBox<2>& box, const Vec<2>& point,
+               double best) {
+  const double dx = std::max({0.0, box.least[0] - point.x(), point.x() - box.most[0]});
+  const double dy = std::max({0.0, box.least[1] - point.y(), point.y() - box.most[1]});
+  if (!(dx * dx + dy * dy <= best)) return best;
+  for (int j = cell.first; j < cell.end(); ++j)
+    best = std::min(best, square_distance(point, node(membranes, j), node(membranes, cell.next(j))));
+  return best;
+}
+
+/// The same from the nodes of `a` moved by `move` to the outline of `b`.
+double nearest_node(const Membranes& membranes, const CellRange& a, const CellRange& b, const Vec<2>& move,
+                    double best) {
+  const BoundingBox<2> box = box_of<2>(membranes, b);
+  for (int i = a.first; i < a.end(); ++i) best = nearest(membranes, b, box, node(membranes, i) + move, best);
+  return best;
+}
+
 }  // namespace
 
 double enclosed_area(const Membranes& membranes, const CellRange& cell) {
   // Relative to the first node: far from the origin the digits would cancel otherwise.
   const Vec<2> origin = node(membranes, cell.first);
   double twice = 0;
-  for (int i = cell.first; i < cell.end(); ++i) {
+  for (int i = cell.first; i < cell.end(); ++i)
     twice += cross(node(membranes, i) - origin, node(membranes, cell.next(i)) - origin);
-  }
   return twice / 2;
 }
 
@@ -88,30 +104,6 @@ double marker_angle(const Membranes& membranes, const CellRange& cell) {
   const Vec<2> arm = node(membranes, cell.first) - centroid(membranes, cell);
   return std::atan2(arm.y(), arm.x());
 }
-
-namespace {
-
-/// Smallest square distance from a point to an outline with these bounds; `best` if it is not below that.
-double nearest(const Membranes& membranes, const CellRange& cell, const BoundingBox<2>& box, const Vec<2>& point,
-               double best) {
-  const double dx = std::max({0.0, box.least[0] - point.x(), point.x() - box.most[0]});
-  const double dy = std::max({0.0, box.least[1] - point.y(), point.y() - box.most[1]});
-  if (!(dx * dx + dy * dy <= best)) return best;
-  for (int j = cell.first; j < cell.end(); ++j) {
-    best = std::min(best, square_distance(point, node(membranes, j), node(membranes, cell.next(j))));
-  }
-  return best;
-}
-
-/// The same from the nodes of `a` moved by `move` to the outline of `b`.
-double nearest_node(const Membranes& membranes, const CellRange& a, const CellRange& b, const Vec<2>& move,
-                    double best) {
-  const BoundingBox<2> box = box_of<2>(membranes, b);
-  for (int i = a.first; i < a.end(); ++i) best = nearest(membranes, b, box, node(membranes, i) + move, best);
-  return best;
-}
-
-}  // namespace
 
 double outline_distance(const Membranes& membranes, const CellRange& a, const CellRange& b, ImageShift shift,
                         const Domain<2>& domain, double limit) {

@@ -253,9 +253,7 @@ void MembraneForces::add_rate_tension(const Membranes& membranes, int cell, Scra
            {s.law.data(), s.law_by_rate.data(), s.segment_force_x.data(), s.segment_force_y.data()}});
   }
   const double* implicit = &membranes.state[variable].value[first];
-  for (int k = 0; k < range.count; ++k) {
-    s.tension[k] += implicit[k] - s.by_rate[k] * s.rate[k];
-  }
+  for (int k = 0; k < range.count; ++k) s.tension[k] += implicit[k] - s.by_rate[k] * s.rate[k];
 }
 
 void MembraneForces::act(Membranes& membranes, int cell, Scratch& s, const CellState& state) const {

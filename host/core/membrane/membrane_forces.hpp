@@ -1,9 +1,7 @@
 // Forces of the membrane laws on the nodes: minus the gradient of the laws' energies.
 #pragma once
 
-#include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "base/worker.hpp"

@@ -58,9 +58,8 @@ MembraneForces::MembraneForces(Membranes& membranes, const MembraneForcesSetup& 
 
 MembraneForces::Scratch::Scratch(int count) {
   for (Padded* values : {&x, &y, &u, &v, &tangent_x, &tangent_y, &inverse_length, &stretch, &rate, &curvature, &tension,
-                         &moment, &law, &energy, &segment_force_x, &segment_force_y, &by_rate, &law_by_rate}) {
+                         &moment, &law, &energy, &segment_force_x, &segment_force_y, &by_rate, &law_by_rate})
     *values = Padded(count);
-  }
 }
 
 void MembraneForces::make_filters(const Membranes& membranes, double viscosity) {
@@ -85,14 +84,12 @@ void MembraneForces::keep_state(Membranes& membranes, double tension_unit) {
     };
     for (std::size_t l = 0; l < type.laws.size(); ++l) {
       Law& law = type.laws[l];
-      for (const StateVariable& variable : law.model.state) {
+      for (const StateVariable& variable : law.model.state)
         law.state.push_back(keep(static_cast<int>(l), law.model.id, variable));
-      }
     }
     if (type.tension_by_rate) type.rate_tension = keep(-1, "", {"rate_tension", 0, tension_unit});
-    for (int k = 0; k < 2 && type.filter; ++k) {
+    for (int k = 0; k < 2 && type.filter; ++k)
       type.held_force[k] = keep(-1, "", {k == 0 ? "held_force_x" : "held_force_y", 0, tension_unit});
-    }
   }
 }
 

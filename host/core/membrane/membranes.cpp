@@ -1,7 +1,5 @@
 #include "membranes.hpp"
 
-#include <cmath>
-
 namespace rouleau::core {
 
 RestShape make_rest_shape(std::vector<double> x, std::vector<double> y, double prestretch) {

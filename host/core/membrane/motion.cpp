@@ -62,11 +62,10 @@ void move(Worker worker, CellNodes& nodes) {
 }  // namespace
 
 void move_nodes(Worker worker, CellNodes& cells) {
-  if (cells.position[2].empty()) {
+  if (cells.position[2].empty())
     move<2>(worker, cells);
-  } else {
+  else
     move<3>(worker, cells);
-  }
 }
 
 template <int D>

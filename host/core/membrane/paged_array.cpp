@@ -26,11 +26,10 @@ std::unique_ptr<void, ReleasePages> take_pages(std::size_t bytes) {
 }
 
 void ReleasePages::operator()(void* first) const {
-  if (bytes < large) {
+  if (bytes < large)
     std::free(first);
-  } else {
+  else
     ::munmap(first, bytes);
-  }
 }
 
 void release_pages(void* first, std::size_t bytes, std::span<const Range> parts, std::size_t bytes_of_element) {

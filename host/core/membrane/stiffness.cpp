@@ -1,9 +1,7 @@
 #include "stiffness.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <vector>
 
 namespace rouleau::core {
 

@@ -11,6 +11,10 @@
 
 namespace rouleau::core {
 
+/// Velocities and weights of D2Q9 in two dimensions, of D3Q19 in three; the relaxation rate 1/tau of the suspending
+/// fluid, whether the quadratic terms of the equilibrium count; all units 1, no parameters. Points to constants.
+rouleau_setup lattice_setup(int dimension, double relaxation_rate, bool inertia);
+
 /// What a manifest would say: parameters by name in lattice units, and what the model reads and writes.
 struct Facts {
   std::vector<std::pair<std::string, double>> parameters = {};

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "cell_messages.hpp"
@@ -19,9 +18,8 @@ CellExchange<D>::CellExchange(GhostCells<D> ghosts, bool velocities)
 template <int D>
 std::vector<BoundingBox<D>> CellExchange<D>::boxes_of_all(const Cells& cells) const {
   std::vector<BoundingBox<D>> mine, all(cells.cells.size(), BoundingBox<D>::unknown());
-  for (int c = 0; c < cells.cell_count(); ++c) {
+  for (int c = 0; c < cells.cell_count(); ++c)
     if (ghosts_.owns(c)) mine.push_back(box_of<D>(cells, c));
-  }
   const auto of_ranks = all_of(ranks_, std::move(mine));
   std::vector<std::size_t> next(of_ranks.size());
   for (int c = 0; c < cells.cell_count(); ++c) {
@@ -63,9 +61,8 @@ void CellExchange<D>::transfer_positions(Cells& cells, DisplacementWatch& viscos
                                          Shown shown, Message& message) {
   for (const int c : of_peer) {
     for (auto& along : along_axes<D>(cells.position)) transfer_nodes(along, cells.cells[c], std::ref(message));
-    for (auto& along : along_axes<D>(cells.velocity)) {
+    for (auto& along : along_axes<D>(cells.velocity))
       if (shown.velocities) transfer_nodes(along, cells.cells[c], std::ref(message));
-    }
     message(&cells.largest_step[c], 1);
     if (shown.memory) transfer_memory<D>(cells, viscosity, c, std::ref(message));
   }
@@ -131,9 +128,8 @@ void CellExchange<D>::hand_over(Cells& cells, DisplacementWatch& viscosity,
   const int own = ranks_.transport->rank();
   std::map<int, Packer> to;
   std::map<int, Unpacker> from;
-  for (const auto& handover : handovers) {
+  for (const auto& handover : handovers)
     if (handover.from == own) transfer_cell<D>(cells, viscosity, handover.cell, std::ref(to[handover.to]));
-  }
   for (auto& [rank, message] : to) ranks_.transport->send(rank, message.take());
   for (const auto& handover : handovers) {
     if (handover.to != own) continue;

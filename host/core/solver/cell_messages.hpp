@@ -1,7 +1,6 @@
 // What the messages about cells are made of.
 #pragma once
 
-#include <algorithm>
 #include <cstring>
 #include <map>
 #include <stdexcept>

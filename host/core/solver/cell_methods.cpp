@@ -27,9 +27,8 @@ std::vector<MembraneLaws> laws_of(const BasicSolverSetup<D>& setup) {
 /// Second difference of a type's energy when its shape is stretched along x.
 double energy_of_strain(const std::shared_ptr<const RestSurface>& rest, const MembraneLaws& laws, double strain) {
   MembraneLaws without_volume;
-  for (const MembraneLaw& law : laws) {
+  for (const MembraneLaw& law : laws)
     if (!law.reads("volume")) without_volume.push_back(law);
-  }
   Surfaces one;
   one.types = {rest};
   add_cell(one, 0, Vec<3>::Zero());

@@ -2,7 +2,7 @@
 
 #include "core/membrane/area_correction.hpp"
 #include "core/surface/volume_correction.hpp"
-#include "ghost_reach.hpp"
+#include "ghost_cells.hpp"
 
 namespace rouleau::core {
 

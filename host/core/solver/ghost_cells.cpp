@@ -1,8 +1,10 @@
 #include "ghost_cells.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
+#include "core/coupling/slip_constants.hpp"
 #include "core/fluid/node_mask.hpp"
 #include "core/membrane/rounding.hpp"
 
@@ -14,15 +16,26 @@ namespace {
 template <int D>
 bool lies_inside(const BoundingBox<D>& box, double reach, const Domain<D>& domain) {
   if (!box.usable()) return false;
-  for (int k = 0; k < D; ++k) {
+  for (int k = 0; k < D; ++k)
     if (!domain.periodic[k] && !(box.least[k] - reach >= 0 && box.most[k] + reach <= domain.size[k] - 1)) return false;
-  }
   bool inside = true;
   for_nodes_near(box, reach, 1, domain, [&](const Box<D>& nodes) { inside = inside && domain.block.holds(nodes); });
   return inside;
 }
 
 }  // namespace
+
+template <int D>
+double extra_reach(const BasicSolverSetup<D>& setup) {
+  double largest = 0;
+  for (const CellType& type : setup.cell_types)
+    if (setup.slip_correction)
+      largest = std::max(largest, std::abs(slip_constants(setup.kernel, type.viscosity_ratio, D).shift));
+  return largest + stencil_above(setup.kernel) - 2;
+}
+
+template double extra_reach(const BasicSolverSetup<2>&);
+template double extra_reach(const BasicSolverSetup<3>&);
 
 template <int D>
 GhostCells<D>::GhostCells(const Ranks<D>& ranks, const std::vector<BoundingBox<D>>& boxes, GhostReach reach,

@@ -5,12 +5,31 @@
 #include <vector>
 
 #include "core/contact/cell_grid.hpp"
+#include "core/contact/cutoffs.hpp"
 #include "core/domain/bounding_box.hpp"
 #include "core/domain/ranks.hpp"
 #include "core/membrane/cell_nodes.hpp"
-#include "ghost_reach.hpp"
+#include "solver_setup.hpp"
 
 namespace rouleau::core {
+
+/// Spacings.
+struct GhostReach {
+  double lattice;      ///< of its nodes to a block: stencil, marks and viscosity
+  double contact = 0;  ///< of its nodes to those of another cell; 0: cells do not act on each other
+};
+
+constexpr double lattice_reach = 8;  ///< a stencil reaches two nodes, marks and viscosity a few more, and what is
+                                     ///< remembered of them is somewhat older
+
+/// How much farther from a node its force may act than that of a kernel of four points at the node itself, spacings.
+template <int D>
+double extra_reach(const BasicSolverSetup<D>& setup);
+
+template <int D>
+GhostReach ghost_reach(const BasicSolverSetup<D>& setup) {
+  return {.lattice = lattice_reach + extra_reach(setup), .contact = contact_reach(setup.interactions)};
+}
 
 /// Every cell has one owner, the rank that computes its forces and moves it; it enters no formula, so that any rank
 /// will do. The one whose block the cell is above hears of it least, so that cells which travel change hands. Other

@@ -76,9 +76,8 @@ Schedule make_schedule(const StepFeatures& has) {
 std::vector<std::string> pass_names(StepFeatures features) {
   features.ranks = false;
   std::vector<std::string> names;
-  for (const Step& step : make_schedule(features).steps) {
+  for (const Step& step : make_schedule(features).steps)
     if (std::find(names.begin(), names.end(), step.name) == names.end()) names.emplace_back(step.name);
-  }
   return names;
 }
 

@@ -1,7 +1,6 @@
 #include "solver.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <stdexcept>
 
 #include "core/fluid/developed_flow.hpp"
@@ -25,10 +24,9 @@ void require_types(const BasicSolverSetup<D>& setup, const Cells& cells) {
   if (cells.cells.empty()) return;
   if (cells.types.size() < setup.cell_types.size())
     throw std::invalid_argument("every cell type needs a state of rest");
-  for (const CellRange& cell : cells.cells) {
+  for (const CellRange& cell : cells.cells)
     if (cell.type < 0 || cell.type >= static_cast<int>(setup.cell_types.size()))
       throw std::invalid_argument("a cell is of a type that the setup does not have");
-  }
 }
 
 /// Whether walls close the section of the flow all around: a duct, or a tube.
@@ -58,9 +56,8 @@ void require_openings(const BasicSolverSetup<D>& setup) {
 template <int D, class Cells>
 FluidSetting<D> fluid_setting(const BasicSolverSetup<D>& setup, const Cells& cells) {
   require_types(setup, cells);
-  for (const int nodes : setup.domain.size) {
+  for (const int nodes : setup.domain.size)
     if (nodes < 1) throw std::invalid_argument("a lattice needs at least one node along every axis");
-  }
   require_openings(setup);
   if (is_enclosed(setup) && setup.developed && (setup.oscillation.any() || !setup.layers.empty()))
     throw std::invalid_argument(
@@ -99,9 +96,8 @@ double channel_viscosity(const BasicSolverSetup<D>& setup) {
   const double height = setup.domain.size[1];
   double sum = 0;
   for (const ProfilePoint& point :
-       layered_profile(viscosity_of_rows(setup.layers, setup.domain.size[1]), setup.viscosity(), {}, 1)) {
+       layered_profile(viscosity_of_rows(setup.layers, setup.domain.size[1]), setup.viscosity(), {}, 1))
     sum += point.velocity;
-  }
   return height * height * height / (12 * sum);
 }
 
@@ -200,13 +196,12 @@ void Solver<T, Set>::run(Task task, Worker worker) {
 
 template <class T, class Set>
 void Solver<T, Set>::run_rows(Task task, Range rows) {
-  if (task == Task::clear_force) {
+  if (task == Task::clear_force)
     fluid_.clear_force(rows);
-  } else if (task == Task::spread) {
+  else if (task == Task::spread)
     cell_tasks_->spread(rows);
-  } else {
+  else
     fluid_.step(rows);
-  }
 }
 
 template <class T, class Set>
@@ -262,9 +257,8 @@ void Solver<T, Set>::start(Any* of_any_precision) {
   }
   for (const int c : cells_.known_cells()) {
     const CellRange& cell = cells_.cells[c];
-    for (auto& velocity : cells_.velocity) {
+    for (auto& velocity : cells_.velocity)
       for (int i = cell.first; i < cell.end() && !velocity.empty(); ++i) velocity[i] *= faster;
-    }
   }
   std::fill(cells_.largest_step.begin(), cells_.largest_step.end(), 0.0);
   cells_.largest_step_of_others = 0;

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <optional>
-#include <type_traits>
 
 #include "any_solver.hpp"
 #include "cell_tasks.hpp"

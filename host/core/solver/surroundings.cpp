@@ -29,12 +29,10 @@ bool Surroundings<D>::show(double reach, const std::vector<char>& open) {
   std::vector<char> is_open = open;  // of all cells
   if (!open.empty()) {
     std::vector<int> mine;
-    for (int c = 0; c < cells_.cell_count(); ++c) {
+    for (int c = 0; c < cells_.cell_count(); ++c)
       if (ghosts.owns(c) && open[c] != 0) mine.push_back(c);
-    }
-    for (const std::vector<int>& of_rank : all_of(ranks, std::move(mine))) {
+    for (const std::vector<int>& of_rank : all_of(ranks, std::move(mine)))
       for (const int c : of_rank) is_open[c] = 1;
-    }
   }
   // Both owners of a pair come to the same answer. Whoever looks rounds in another way.
   const double room = reach * (1 + 1e-9) + 1e-6;
@@ -67,9 +65,8 @@ bool Surroundings<D>::show(double reach, const std::vector<char>& open) {
   }
   std::sort(shown_.begin(), shown_.end());
   seen_->known.clear();
-  for (int c = 0; c < cells_.cell_count(); ++c) {
+  for (int c = 0; c < cells_.cell_count(); ++c)
     if (cells_.knows(c)) seen_->known.push_back(c);
-  }
   exchange_->show_places(*seen_, sights);
   return true;
 }

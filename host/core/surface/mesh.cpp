@@ -86,9 +86,8 @@ void Mesh::join_edges() {
 
 void Mesh::make_rings() {
   corners_ = rings(node_count_, [&](const auto& add) {
-    for (int t = 0; t < triangle_count(); ++t) {
+    for (int t = 0; t < triangle_count(); ++t)
       for (int k = 0; k < 3; ++k) add(triangles_[t][k], 3 * t + k);
-    }
   });
   node_edges_ = rings(node_count_, [&](const auto& add) {
     for (int e = 0; e < edge_count(); ++e) {
@@ -101,9 +100,8 @@ void Mesh::make_rings() {
   seen[0] = true;
   for (std::size_t next = 0; next < reached.size(); ++next) {
     for (const int e : triangle_edges_[reached[next]]) {
-      for (const int t : {edges_[e].left, edges_[e].right}) {
+      for (const int t : {edges_[e].left, edges_[e].right})
         if (!seen[t]) reached.push_back(t), seen[t] = true;
-      }
     }
   }
   if (static_cast<int>(reached.size()) < triangle_count()) {
@@ -129,9 +127,8 @@ void Mesh::make_rings() {
 double enclosed_volume(const Mesh& mesh, Nodes nodes) {
   const Vec<3> origin = nodes[0];  // far from it the digits would cancel
   double sum = 0;
-  for (const auto& [a, b, c] : mesh.triangles()) {
+  for (const auto& [a, b, c] : mesh.triangles())
     sum += (nodes[a] - origin).dot((nodes[b] - origin).cross(nodes[c] - origin));
-  }
   return sum / 6;
 }
 
@@ -170,11 +167,10 @@ std::vector<double> node_areas(const Mesh& mesh, Nodes nodes) {
     for (int k = 0; k < 3; ++k) {
       const int l = (k + 1) % 3, m = (k + 2) % 3;
       double share = 0;
-      if (along[0] < 0 || along[1] < 0 || along[2] < 0) {
+      if (along[0] < 0 || along[1] < 0 || along[2] < 0)
         share = along[k] < 0 ? twice / 4 : twice / 8;
-      } else {
+      else
         share = (square[l] * along[l] + square[m] * along[m]) / (8 * twice);
-      }
       area[corners[k]] += share;
     }
   }
@@ -232,9 +228,8 @@ InertiaEllipsoid inertia_ellipsoid(const Mesh& mesh, Nodes nodes) {
 
 PlaneDeformation deformation_in_xy(const InertiaEllipsoid& ellipsoid) {
   int across = 0;  // the axis that lies closest to z
-  for (int k = 1; k < 3; ++k) {
+  for (int k = 1; k < 3; ++k)
     if (std::abs(ellipsoid.axes[k].z()) > std::abs(ellipsoid.axes[across].z())) across = k;
-  }
   const int major = across == 0 ? 1 : 0, minor = across == 2 ? 1 : 2;
   const double a = ellipsoid.semi_axes[major], b = ellipsoid.semi_axes[minor];
   const Vec<3>& axis = ellipsoid.axes[major];

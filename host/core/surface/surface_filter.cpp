@@ -1,10 +1,14 @@
 #include "surface_filter.hpp"
 
+#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <rouleau/pack.hpp>
+#include <stdexcept>
 
+#include "core/domain/run_loop.hpp"
 #include "core/membrane/semi_implicit_filter.hpp"
 
 namespace rouleau::core {
@@ -26,9 +30,8 @@ Matrix stiffness_of_shape(const RestSurface& rest) {
     const double with_first[3] = {g11 + 2 * g12 + g22, -(g11 + g12), -(g12 + g22)};
     const double product[3][3] = {
         {with_first[0], with_first[1], with_first[2]}, {with_first[1], g11, g12}, {with_first[2], g12, g22}};
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) entries.emplace_back(corner[i], corner[j], rest.triangle_area[t] * product[i][j]);
-    }
   }
   Matrix matrix(mesh.node_count(), mesh.node_count());
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -106,7 +109,69 @@ std::vector<double> inverse_series(double a, double b, double largest, int most)
   return series;
 }
 
+using Matrix = Eigen::SparseMatrix<double>;
+
+struct SolveTask {
+  int count;
+  const int *first, *place;
+  const double *entry, *inverse;
+  double* rows;
+};
+
+struct Solve {
+  template <int register_bytes>
+  ROULEAU_ALWAYS_INLINE static void run(const SolveTask* task) {
+    using Lanes = Pack<double, 4>;
+    const SolveTask t = *task;
+    // A pack that is written like this is read at once; Pack(number) takes an addition more.
+    const auto all = [](double number) { return Lanes(Lanes::Vector{number, number, number, number}); };
+    for (int j = 0; j < t.count; ++j) {
+      const Lanes of_column = Lanes::load(t.rows + 4 * j);
+      for (int k = t.first[j]; k < t.first[j + 1]; ++k) {
+        double* const row = t.rows + t.place[k];
+        (Lanes::load(row) - all(t.entry[k]) * of_column).store(row);
+      }
+    }
+    for (int j = t.count; j-- > 0;) {
+      // Two sums take turns, since each waits for its last term.
+      Lanes one = Lanes::load(t.rows + 4 * j) * all(t.inverse[j]), two = 0.0;
+      int k = t.first[j];
+      for (; k + 2 <= t.first[j + 1]; k += 2) {
+        one -= all(t.entry[k]) * Lanes::load(t.rows + t.place[k]);
+        two -= all(t.entry[k + 1]) * Lanes::load(t.rows + t.place[k + 1]);
+      }
+      if (k < t.first[j + 1]) one -= all(t.entry[k]) * Lanes::load(t.rows + t.place[k]);
+      (one + two).store(t.rows + 4 * j);
+    }
+  }
+};
+
 }  // namespace
+
+MeshInverse::MeshInverse(const Matrix& matrix) {
+  const Eigen::SimplicialLDLT<Matrix> factors(matrix);
+  if (factors.info() != Eigen::Success) {
+    throw std::invalid_argument(
+        "the surface at rest has triangles without area, for which there is no semi-implicit step");
+  }
+  const Matrix lower = factors.matrixL();
+  for (int i = 0; i < matrix.rows(); ++i) {
+    place_.push_back(factors.permutationP().indices()[i]);
+    inverse_.push_back(1 / factors.vectorD()[i]);
+    first_.push_back(entries());
+    for (Matrix::InnerIterator below(lower, i); below; ++below) {
+      if (below.row() == i) continue;
+      row_.push_back(4 * static_cast<int>(below.row()));
+      entry_.push_back(below.value());
+    }
+  }
+  first_.push_back(entries());
+}
+
+void MeshInverse::solve(double* rows) const {
+  run_loop<Solve>(
+      SolveTask{static_cast<int>(place_.size()), first_.data(), row_.data(), entry_.data(), inverse_.data(), rows});
+}
 
 double largest_eigenvalue(const KernelResponse& response, double stretching, double bending) {
   const Pulls pulls(response, stretching, bending);
@@ -171,9 +236,8 @@ void SurfaceFilter::apply(const std::array<double*, 3>& force, const std::array<
   const double* const filtered = apply_polynomial(
       {static_cast<int>(count), neighbours_.first.data(), neighbours_.entry.data(), own_.data(), weight_.data()},
       series_, room);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i)
     for (std::size_t k = 0; k < 3; ++k) force[k][i] = held[k][i] + filtered[4 * i + k];
-  }
 }
 
 }  // namespace rouleau::core

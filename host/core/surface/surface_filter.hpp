@@ -1,16 +1,37 @@
 // The semi-implicit step of stiff surfaces: SemiImplicitFilter's, on a mesh.
 #pragma once
 
+#include <Eigen/SparseCore>
 #include <array>
 #include <optional>
 #include <vector>
 
 #include "core/membrane/node_mobility.hpp"
-#include "mesh_inverse.hpp"
 #include "mesh_polynomial.hpp"
 #include "surfaces.hpp"
 
 namespace rouleau::core {
+
+/// A symmetric positive matrix M = P' L D L' P.
+class MeshInverse {
+ public:
+  /// Throws std::invalid_argument for a matrix that has no inverse.
+  explicit MeshInverse(const Eigen::SparseMatrix<double>& matrix);
+
+  /// The row of a node after the permutation P.
+  [[nodiscard]] std::size_t place(std::size_t node) const { return static_cast<std::size_t>(place_[node]); }
+  /// Replaces vectors of the nodes by M^-1 of them: rows of four numbers, in the order of place().
+  void solve(double* rows) const;
+  /// Of L below its diagonal.
+  [[nodiscard]] int entries() const { return static_cast<int>(entry_.size()); }
+
+ private:
+  // L without its diagonal of ones, column by column.
+  std::vector<int> place_;
+  std::vector<int> first_, row_;  // entries [first_[j], first_[j + 1]) belong to column j; where rows of vectors begin
+  std::vector<double> entry_;
+  std::vector<double> inverse_;  // 1/D
+};
 
 /// Largest eigenvalue of (K A^-1)/2 that a lattice feels on a mesh so fine that it has all such waves; parameters as
 /// below.

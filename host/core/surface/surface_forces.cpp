@@ -1,6 +1,5 @@
 #include "surface_forces.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -27,9 +26,8 @@ SurfaceForces::Law SurfaceForces::describe(const MembraneLaw& model) {
   const bool viscous = model.writes("shear_viscosity") || model.writes("area_viscosity");
   const bool triangle = model.writes("stress_1") || model.writes("stress_2") || viscous;
   const bool cell = model.writes("pressure") || model.writes("surface_tension");
-  if (!triangle && !cell && !model.writes("moment") && !model.writes("area_tension")) {
+  if (!triangle && !cell && !model.writes("moment") && !model.writes("area_tension"))
     throw std::invalid_argument("\"" + model.id + "\" is no law of surfaces in three dimensions");
-  }
   auto element = Law::Element::area;
   if (model.writes("moment")) element = Law::Element::curvature;
   if (cell) element = Law::Element::cell;
@@ -93,9 +91,8 @@ void SurfaceForces::take_semi_implicit_steps(Surfaces& surfaces, double viscosit
 }
 
 void SurfaceForces::take_viscosity(Surfaces& surfaces, const std::vector<double>& moduli, double tension_unit) {
-  for (std::size_t t = 0; t < types_.size(); ++t) {
+  for (std::size_t t = 0; t < types_.size(); ++t)
     if (types_[t].viscous()) types_[t].viscosity.emplace(surfaces, static_cast<int>(t), moduli[t], tension_unit);
-  }
 }
 
 SurfaceForces::Scratch& SurfaceForces::scratch_of(int first_cell) {
@@ -170,9 +167,8 @@ SurfaceForces::Whole SurfaceForces::measure(const Type& type, Nodes nodes, Scrat
       whole.volume += (nodes[type.mesh.corner[0][t]] - origin).dot(normal) / 6;
       for (int k = 0; k < 3 && type.area; ++k) s.area_ratio[type.mesh.corner[k][t]] += twice / 2;
     }
-    for (std::size_t i = 0; i < type.area_share.size() && type.area; ++i) {
+    for (std::size_t i = 0; i < type.area_share.size() && type.area; ++i)
       s.area_ratio[i] *= type.area_share[i] * type.inverse_node_area[i];
-    }
   }
   return whole;
 }
@@ -180,9 +176,8 @@ SurfaceForces::Whole SurfaceForces::measure(const Type& type, Nodes nodes, Scrat
 void SurfaceForces::apply(const Type& type, const RestSurface& rest, Scratch& s, Whole& whole, MembraneEnergy* energy) {
   const auto triangles = static_cast<std::size_t>(type.mesh.count), nodes = type.inverse_node_area.size();
   for (auto& stress : s.stress) std::fill(stress.begin(), stress.end(), 0.0);
-  if (type.viscosity) {
+  if (type.viscosity)
     for (auto& viscosity : s.straining.viscosity) std::fill(viscosity.begin(), viscosity.end(), 0.0);
-  }
   if (type.curvature) std::fill(s.node_moment.begin(), s.node_moment.end(), 0.0);
   if (type.area) std::fill(s.node_pull.begin(), s.node_pull.end(), 0.0);
   for (const Law& law : type.laws) {
@@ -253,9 +248,8 @@ void SurfaceForces::apply(const Type& type, const RestSurface& rest, Scratch& s,
 }
 
 void SurfaceForces::act(const Type& type, const Whole& whole, Scratch& s) {
-  if (type.area) {
+  if (type.area)
     for (std::size_t i = 0; i < type.area_share.size(); ++i) s.node_pull[i] *= type.area_share[i];
-  }
   SurfaceArrays arrays = arrays_of(type, s);
   arrays.pressure = whole.pressure;
   arrays.surface_tension = whole.surface_tension;
@@ -308,9 +302,8 @@ MembraneEnergy SurfaceForces::energies(const Surfaces& surfaces, const Ranks<3>&
     Whole whole = measure(type, surfaces.nodes(c), s);
     MembraneEnergy energy;
     apply(type, surfaces.type_of(c), s, whole, &energy);
-    if (type.viscosity) {
+    if (type.viscosity)
       energy.dissipation = type.viscosity->power(type.mesh, arrays_of(type, s), surfaces, surfaces.cells[c]);
-    }
     sum.add(c, energy);
   }
   return sum.of_all(ranks);

@@ -37,6 +37,34 @@ Icosahedron icosahedron() {
   return solid;
 }
 
+/// A curve from an axis to that axis, 0: x, 1: y, by its parameter from 0 to pi, turned about it. Nodes lie at equal
+/// distances along meridians.
+template <class Curve>
+TriangleSurface turned(int axis, int n, double scale_of_all, const Curve& point) {
+  constexpr int steps = 4096;
+  // Length along the profile from the axis, at equal steps of the parameter.
+  std::vector<double> length(steps + 1);
+  for (int k = 1; k <= steps; ++k) {
+    const auto [x0, y0] = point(std::numbers::pi * (k - 1) / steps);
+    const auto [x1, y1] = point(std::numbers::pi * k / steps);
+    length[k] = length[k - 1] + std::hypot(x1 - x0, y1 - y0);
+  }
+  TriangleSurface made = unit_sphere(n);
+  for (Vec<3>& node : made.nodes) {
+    const double from_axis = std::hypot(node[1 - axis], node.z());
+    const double wanted = std::atan2(from_axis, node[axis]) / std::numbers::pi * length[steps];
+    const auto above =
+        std::clamp<std::ptrdiff_t>(std::upper_bound(length.begin(), length.end(), wanted) - length.begin(), 1, steps);
+    const double share = (wanted - length[above - 1]) / (length[above] - length[above - 1]);
+    const auto [r, y] = point(std::numbers::pi * (static_cast<double>(above - 1) + share) / steps);
+    const double scale = from_axis > 0 ? r / from_axis : 0;
+    node *= scale;
+    node[axis] = y;
+    node *= scale_of_all;
+  }
+  return made;
+}
+
 }  // namespace
 
 CurvePoint biconcave_curve(double radius, double angle) {
@@ -59,9 +87,8 @@ TriangleSurface unit_sphere(int n) {
     if (is_new) {
       // On an edge this divides the arc evenly, and all three corners of a face are alike.
       Vec<3> place = Vec<3>::Zero();
-      for (const auto& [corner, share] : key) {
+      for (const auto& [corner, share] : key)
         if (share > 0) place += std::sin(share * step) * solid.corner[corner];
-      }
       sphere.nodes.push_back(place.normalized());
     }
     return found->second;
@@ -116,38 +143,6 @@ Vec<3> spheroid_axes(const SurfaceContent& content, bool prolate) {
   const double axis = std::exp(prolate ? -round : round), across = std::sqrt(content.area / spheroid(axis).area);
   return prolate ? Vec<3>(axis * across, across, across) : Vec<3>(across, axis * across, across);
 }
-
-namespace {
-
-/// A curve from an axis to that axis, 0: x, 1: y, by its parameter from 0 to pi, turned about it. Nodes lie at equal
-/// distances along meridians.
-template <class Curve>
-TriangleSurface turned(int axis, int n, double scale_of_all, const Curve& point) {
-  constexpr int steps = 4096;
-  // Length along the profile from the axis, at equal steps of the parameter.
-  std::vector<double> length(steps + 1);
-  for (int k = 1; k <= steps; ++k) {
-    const auto [x0, y0] = point(std::numbers::pi * (k - 1) / steps);
-    const auto [x1, y1] = point(std::numbers::pi * k / steps);
-    length[k] = length[k - 1] + std::hypot(x1 - x0, y1 - y0);
-  }
-  TriangleSurface made = unit_sphere(n);
-  for (Vec<3>& node : made.nodes) {
-    const double from_axis = std::hypot(node[1 - axis], node.z());
-    const double wanted = std::atan2(from_axis, node[axis]) / std::numbers::pi * length[steps];
-    const auto above =
-        std::clamp<std::ptrdiff_t>(std::upper_bound(length.begin(), length.end(), wanted) - length.begin(), 1, steps);
-    const double share = (wanted - length[above - 1]) / (length[above] - length[above - 1]);
-    const auto [r, y] = point(std::numbers::pi * (static_cast<double>(above - 1) + share) / steps);
-    const double scale = from_axis > 0 ? r / from_axis : 0;
-    node *= scale;
-    node[axis] = y;
-    node *= scale_of_all;
-  }
-  return made;
-}
-
-}  // namespace
 
 TriangleSurface biconcave_disc(int n, double radius) {
   return turned(1, n, radius, [](double from_pole) -> std::pair<double, double> {

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/geometry/zero_border.hpp"
+#include "core/geometry/border.hpp"
 #include "scene/lattice.hpp"
 
 namespace rouleau::observe {
@@ -53,9 +53,8 @@ class Samples {
       if (beyond_ && std::abs(values[i]) < least) values[i] = -least;
     }
     core::Border<Axes> border = core::zero_border<Axes>(values, size_);
-    for (core::Vec<Axes>& corner : border.corners) {
+    for (core::Vec<Axes>& corner : border.corners)
       for (int k = 0; k < Axes && beyond_; ++k) corner[k] = std::clamp(corner[k] - 1, 0.0, length(k));
-    }
     return border;
   }
   /// Whether two places, counted in samples, lie at one end of the domain.

@@ -66,9 +66,8 @@ std::optional<Eigen::VectorXd> shares_of(const NodesAround<D>& around, int order
     Eigen::Index c = 0;
     terms(i, c++) = 1;
     for (int k = 0; k < D && c < columns; ++k) terms(i, c++) = from[k];
-    for (int k = 0; k < D && c < columns; ++k) {
+    for (int k = 0; k < D && c < columns; ++k)
       for (int l = k; l < D; ++l) terms(i, c++) = from[k] * from[l];
-    }
   }
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> fit(weight.asDiagonal() * terms);
   if (fit.rank() < columns) return {};
@@ -107,9 +106,8 @@ std::vector<core::Vec<D>> WallShear<D>::of(const core::AnyFluid<D>& fluid) const
     for (; term != terms_.end() && term->node < begin + band.size(); ++term) {
       Matrix& stress = stresses[static_cast<std::size_t>(term->place)];
       const core::Stress<D>& node = band[term->node - begin];
-      for (int k = 0, c = 0; k < D; ++k) {
+      for (int k = 0, c = 0; k < D; ++k)
         for (int l = k; l < D; ++l, ++c) stress(k, l) += term->share * node[static_cast<std::size_t>(c)];
-      }
     }
     begin += band.size();
   });

@@ -1,7 +1,6 @@
 // Shear stress on walls of any shape.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -35,8 +34,5 @@ class WallShear {
   std::vector<Term> terms_;            ///< by node
   std::vector<core::Vec<D>> normals_;  ///< of the places, into the fluid
 };
-
-extern template class WallShear<2>;
-extern template class WallShear<3>;
 
 }  // namespace rouleau::observe

@@ -12,7 +12,6 @@
 #include "core/membrane/rounding.hpp"
 #include "plan/estimate.hpp"
 #include "plan/placed_cells.hpp"
-#include "plan/solver_setup.hpp"
 #include "scene/lattice.hpp"
 #include "scene/scene_reader.hpp"
 
@@ -95,9 +94,8 @@ core::Decomposition<D> cut(const Plan& plan, int ranks) {
   const scene::Scene& scene = *plan.scene;
   const core::Domain<D> domain = scene::lattice_domain<D>(scene);
   Points<D> points(domain, membrane_nodes(scene));
-  if (plan.has_cells) {
+  if (plan.has_cells)
     for_each_cell<D>(scene, scene::lattice_spacing(scene), [&](std::size_t, const auto& cell) { points.add(cell); });
-  }
   return core::Decomposition<D>::bisected(domain, ranks, points.all(), points.cost(plan), {},
                                           some_fluid<D>(scene, domain));
 }

@@ -18,9 +18,8 @@ namespace {
 using Read = core::TriangleSurface (*)(Words&);
 
 bool is_off(std::string_view word) {
-  for (const std::string_view optional : {"ST", "C", "N", "4", "n"}) {
+  for (const std::string_view optional : {"ST", "C", "N", "4", "n"})
     if (word.starts_with(optional)) word.remove_prefix(optional.size());
-  }
   return word == "OFF";
 }
 
@@ -79,10 +78,9 @@ core::TriangleSurface read_triangles(const std::filesystem::path& file) {
     throw Error(Cause::bad_input, rouleau::Place{file.string()}, problem);
   };
   const int nodes = static_cast<int>(surface.nodes.size());
-  for (int i = 0; i < nodes; ++i) {
+  for (int i = 0; i < nodes; ++i)
     if (!surface.nodes[i].allFinite())
       refuse("node " + std::to_string(i) + " has a coordinate that is no finite number");
-  }
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
     for (const int node : surface.triangles[i]) {
       if (node < 0 || node >= nodes)
@@ -141,12 +139,11 @@ int weld(core::TriangleSurface& surface, double distance) {
   for (const core::Vec<3>& at : surface.nodes) key.push_back({direction.dot(at), at.x(), at.y(), at.z()});
   std::sort(order.begin(), order.end(), [&](int a, int b) { return std::tie(key[a], a) < std::tie(key[b], b); });
   std::vector<int> different;  // one of each place, the first
-  for (const int node : order) {
+  for (const int node : order)
     if (!different.empty() && surface.nodes[different.back()] == surface.nodes[node])
       first[node] = different.back();
     else
       different.push_back(node);
-  }
   long compared = 0;
   for (std::size_t a = 0; a < different.size() && distance > 0; ++a) {
     const core::Vec<3>& from = surface.nodes[different[a]];
@@ -166,9 +163,8 @@ int weld(core::TriangleSurface& surface, double distance) {
     renamed[i] = kept == i ? static_cast<int>(nodes.size()) : renamed[kept];
     if (kept == i) nodes.push_back(surface.nodes[i]);
   }
-  for (auto& triangle : surface.triangles) {
+  for (auto& triangle : surface.triangles)
     for (int& node : triangle) node = renamed[node];
-  }
   std::erase_if(surface.triangles, [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
   surface.nodes = std::move(nodes);
   return count - static_cast<int>(surface.nodes.size());

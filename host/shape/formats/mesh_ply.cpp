@@ -110,14 +110,10 @@ double read_number(Words& words, Form form, const Type& type) {
   if (form == Form::big_endian) std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(type.size));
   if (type.kind == Kind::real) return type.size == 4 ? value_of<float>(bytes.data()) : value_of<double>(bytes.data());
   const bool with_sign = type.kind == Kind::signed_number;
-  switch (type.size) {
-    case 1:
-      return with_sign ? value_of<std::int8_t>(bytes.data()) : value_of<std::uint8_t>(bytes.data());
-    case 2:
-      return with_sign ? value_of<std::int16_t>(bytes.data()) : value_of<std::uint16_t>(bytes.data());
-    default:
-      return with_sign ? value_of<std::int32_t>(bytes.data()) : value_of<std::uint32_t>(bytes.data());
-  }
+  const char* const from = bytes.data();
+  if (type.size == 1) return with_sign ? value_of<std::int8_t>(from) : value_of<std::uint8_t>(from);
+  if (type.size == 2) return with_sign ? value_of<std::int16_t>(from) : value_of<std::uint16_t>(from);
+  return with_sign ? value_of<std::int32_t>(from) : value_of<std::uint32_t>(from);
 }
 
 bool is_corners(const Property& property) {

@@ -1,4 +1,5 @@
 // Membranes that remember: tension by rate, stepped implicitly, and laws with state of their own.
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "core/membrane/membrane_forces.hpp"
@@ -47,7 +48,10 @@ void scale(Membranes& m, double factor) {
   }
 }
 
-const std::vector<double>& state(const Membranes& m, const char* name) { return find_state(m.state, 0, name)->value; }
+const std::vector<double>& state(const Membranes& m, const char* name) {
+  const auto named = [name](const core::ElementState& state) { return state.cell_type == 0 && state.name == name; };
+  return std::find_if(m.state.begin(), m.state.end(), named)->value;
+}
 
 }  // namespace
 

@@ -6,7 +6,7 @@
 
 #include "core/geometry/faceted.hpp"
 #include "core/geometry/formulas.hpp"
-#include "core/geometry/zero_border.hpp"
+#include "core/geometry/border.hpp"
 #include "random.hpp"
 
 using namespace rouleau::core;

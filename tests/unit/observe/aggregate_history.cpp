@@ -17,10 +17,21 @@ Snapshot snapshot(const std::vector<int>& labels) {
     CellSnapshot entry{};
     entry.cell = static_cast<int>(cell);
     entry.aggregate = labels[cell];
+    entry.bonded = entry.cell;
     result.aggregate_count += entry.aggregate == entry.cell ? 1 : 0;
     result.cells.push_back(entry);
   }
   return result;
+}
+
+/// Bonds between these cells, as labels of the snapshot's cells have them.
+void join(Snapshot& snapshot, const std::vector<ContactSnapshot>& bonds) {
+  std::vector<CellContact> pairs;
+  for (const ContactSnapshot& bond : bonds) pairs.push_back({bond.cell_a, bond.cell_b, {}, 0, 0});
+  const Aggregates joined = find_aggregates(static_cast<int>(snapshot.cells.size()), pairs);
+  for (std::size_t k = 0; k < snapshot.cells.size(); ++k) snapshot.cells[k].bonded = joined.label[k];
+  snapshot.bonds = bonds;
+  snapshot.attracts = true;
 }
 
 }  // namespace
@@ -70,8 +81,7 @@ TEST_CASE("only what bonds join is joined, and a pair that meets through an imag
   repelling.follow(both);
   CHECK(repelling.events()[0].joined.empty());
   CHECK(repelling.lifetimes().empty());
-  both.attracts = true;
-  both.bonds = {touching(0, 1, 0)};
+  join(both, {touching(0, 1, 0)});
   mixed.follow(both);
   CHECK(mixed.events()[0].together() == std::vector<std::vector<int>>{{0, 1}, {2}});
   CHECK(mixed.rouleaux() == 1);
@@ -94,8 +104,9 @@ TEST_CASE("aggregates live from the first output with their members to the first
     Snapshot s = snapshot(labels);
     s.time = time;
     s.stage_name = stage;
-    s.attracts = true;
-    for (const auto& [a, b] : pairs) s.bonds.push_back({a, b, {}, 1e-7});
+    std::vector<ContactSnapshot> bonds;
+    for (const auto& [a, b] : pairs) bonds.push_back({a, b, {}, 1e-7});
+    join(s, bonds);
     history.follow(s);
     history = nlohmann::json(history).get<AggregateHistory>();
   };

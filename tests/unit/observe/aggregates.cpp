@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/contact/surface_crossing.hpp"
+#include "core/contact/crossing.hpp"
 #include "core/contact/triangle_contacts.hpp"
 #include "core/contact/wall_gap.hpp"
 #include "core/membrane/geometry.hpp"

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/contact/wall_gap.hpp"
-#include "core/geometry/border_of_region.hpp"
+#include "core/geometry/border.hpp"
 #include "core/geometry/formulas.hpp"
 #include "core/surface/triangle_surface.hpp"
 #include "observe/cell_free_layer.hpp"

@@ -1,4 +1,4 @@
-#include "stability/limits_files.hpp"
+#include "stability/limits_run.hpp"
 
 #include <catch2/catch.hpp>
 

@@ -1,11 +1,7 @@
 #include "section.hpp"
 
 #include <Eigen/SparseLU>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <stdexcept>
-#include <vector>
 
 namespace rouleau::core {
 
@@ -22,9 +18,8 @@ class SectionEquations {
       count_ += number_.back() >= 0 ? 1 : 0;
     }
     of_walls_ = Eigen::VectorXd::Zero(count_);
-    for (int i = 0; i < nodes_.count(); ++i) {
+    for (int i = 0; i < nodes_.count(); ++i)
       if (number_[static_cast<std::size_t>(i)] >= 0) add(i);
-    }
     if (!walled_) return;
     Eigen::SparseMatrix<double> matrix(count_, count_);
     matrix.setFromTriplets(entries_.begin(), entries_.end());
