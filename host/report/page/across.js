@@ -41,6 +41,8 @@ class FlowAcross {
     context.font = "12px system-ui, sans-serif";
     if (!between) { context.fillStyle = css("--quiet"); context.fillText("no flow was written yet", map.right + 20, height / 2); return; }
     this.paintProfile(context, this.profile(between), {left: map.right + 48, right: width - 12, top: map.top, bottom});
+    const asOf = this.fields.asOf(this.timeline.between(this.run));
+    context.fillStyle = css("--quiet"); context.fillText(asOf, width - 16 - context.measureText(asOf).width, map.top + 14);
   }
   /// The velocities on the plane, z to the right; where its picture ends.
   paintPlane(context, between, {left, bottom, room}) {

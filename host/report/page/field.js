@@ -32,6 +32,11 @@ class Fields {
     const now = time[a] + share * (time[b] - time[a]), [from, to] = [low, high].map(i => time[outputs[i]]);
     return {a: low, b: high, share: to > from ? Math.min(1, Math.max(0, (now - from) / (to - from))) : 0};
   }
+  /// The time of the last field before an instant, in words, where no later one says what came of it; else nothing.
+  asOf(instant) {
+    const now = this.between(instant), {outputs} = this.fields;
+    return now && now.a === now.b && (outputs[now.a] < instant.a || instant.share > 0) ? `as of ${format(this.run.time_s[outputs[now.a]], 3)} s` : "";
+  }
   /// A canvas of one pixel for each block; the first row is the lowest.
   picture(name, index) {
     const key = `${name} ${index} ${isDark()}`;
