@@ -66,7 +66,9 @@ def main():
             "the log has others": came != list(range(traffic["cells_in"])) or len(set(left)) != traffic["cells_out"],
             "cells wait": figures["waiting"] > 0,
             "another hematocrit": abs(figures["hematocrit of the inlet over what was asked for, less 1"]) > 0.02,
-            "volume is lost": abs(figures["what flowed in less what flowed out, over the former"]) > 1e-6,
+            # Flows are sampled when cells are looked for. Those of the outlet scatter by a hundredth while cells leave, so
+            # that their mean is known to some 2e-4; without cells what goes out is what comes in to 1e-8.
+            "volume is lost": abs(figures["what flowed in less what flowed out, over the former"]) > 1e-3,
         }.items() if there]
         sys.exit("; ".join(faults))
 

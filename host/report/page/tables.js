@@ -50,7 +50,7 @@ function showDimensionless(given) {
   const meaning = {
     capillary: "shear stress against membrane elasticity", membrane_strain: "stretch that the shear stress asks for",
     adhesion_number: "attraction against shear stress", viscosity_ratio: "interior against suspending fluid",
-    hematocrit: "share of the domain that the cells at rest enclose",
+    hematocrit: "share of the domain that the cells at rest enclose; with a feed as many as its hematocrit fills it with",
   };
   const has = name => given[name] !== undefined;
   const rows = [];
