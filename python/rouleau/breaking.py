@@ -68,7 +68,7 @@ def break_up(scene: SceneLike, *, most: Any = "400 1/s", ramp: Any = "1 s", stra
     if named := [key for key in changes if pointer_of(key).startswith("/stages")]:
         raise Error(Fault(f"{named[0]} would be lost: stages are made anew", "change the stages in the scene itself"))
     rows: list[dict[str, Any]] = []
-    rows_due = {"strain": 0.25, **({} if ramp is None else {"seconds": f"{lasts / 200!r} {lasts_unit}"})}
+    rows_due: dict[str, Any] = {"strain": 0.25, **({} if ramp is None else {"seconds": f"{lasts / 200!r} {lasts_unit}"})}
     together = 0
     adhesion = math.nan
 
