@@ -73,14 +73,16 @@ def vessel(polygons_m: Sequence[ArrayLike]) -> Shape:
 def polygons(path: str | os.PathLike[str], unit_m: float = 1e-6, deviation: float = 0.1) -> list[Floats]:
     """The closed lines of a drawing, .dxf or .svg, as polygons [n, 2] in m, in its order. `unit_m`: a unit of the drawing, in m.
     Curves become straight pieces, at most `deviation` units away. The y axis points up: that of an SVG is turned, and its
-    lower left corner becomes the origin. Lines and arcs of a DXF that meet at their ends are one line. DXF needs ezdxf."""
+    lower left corner becomes the origin. Its lengths in mm, cm, in, pt and pc become px, its units: 96 an inch. Lines and arcs of
+    a DXF that meet at their ends are one line. DXF needs ezdxf."""
     path = pathlib.Path(path)
     if not path.is_file():
         raise Error(Fault("this is no plain file", "give a .dxf or .svg file", str(path)), exit_code=4)
     readers = {".dxf": _dxf, ".svg": _svg}
     if path.suffix.lower() not in readers:
         raise Error(Fault(f'no drawing is read from "{path.suffix}"', "save it as .dxf or .svg", str(path)))
-    found = [unit_m * _corners(line) for line in readers[path.suffix.lower()](path, deviation)]
+    lines = map(_distinct, readers[path.suffix.lower()](path, deviation))
+    found = [unit_m * _corners(line) for line in lines if len(line) > 2]
     if not found:
         raise Error(Fault("there is no closed line in this drawing", "close its outlines; text and pictures are not read", str(path)))
     return found
@@ -113,6 +115,12 @@ def png(rows: Sequence[Sequence[int]]) -> bytes:
 
 
 Line = list[tuple[float, float]]
+
+
+def _distinct(line: Line) -> Line:
+    """A closed line without the points that are where the next one is, but for rounding."""
+    reach = 1e-12 * max((abs(v) for point in line for v in point), default=0.0)
+    return [point for point, other in zip(line, line[1:] + line[:1]) if math.dist(point, other) > reach]
 
 
 def _dxf(path: pathlib.Path, deviation: float) -> list[Line]:
@@ -158,6 +166,8 @@ def _joined(lines: list[Line], reach: float) -> Iterator[Line]:
 
 Matrix = tuple[float, float, float, float, float, float]
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_PX = {"": 1.0, "px": 1.0, "pt": 96 / 72, "pc": 16.0, "in": 96.0, "cm": 96 / 2.54, "mm": 96 / 25.4}
+_MOVING = {"transform", "transform-origin", "translate", "rotate", "scale", "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "d"}
 
 
 def _svg(path: pathlib.Path, deviation: float) -> list[Line]:
@@ -166,36 +176,74 @@ def _svg(path: pathlib.Path, deviation: float) -> list[Line]:
         box = _numbers(root.get("viewBox", ""))
         bottom = box[1] + box[3] if len(box) == 4 else _length(root, "height")
         left = box[0] if len(box) == 4 else 0.0
+        for sheet in root.iterfind(".//{*}style"):
+            _refuse_moving(set(_css(sheet.text)) & {*_MOVING, "display", "visibility"})
+        root.tag = "g"  # an svg in it is another matter
+        root.attrib.pop("style", None)  # where the page stands in another
         lines = list(_svg_lines(root, (1, 0, 0, 1, 0, 0), deviation))
-    except (ElementTree.ParseError, ValueError, IndexError) as trouble:
+    except (ElementTree.ParseError, ValueError, LookupError, OSError) as trouble:
         raise Error(Fault(f"this is no SVG that can be read: {trouble}", "save the drawing again, as plain SVG", str(path)), exit_code=4) from None
-    return [[(x - left, bottom - y) for x, y in line] for line in lines if len(line) > 2]
+    return [[(x - left, bottom - y) for x, y in line] for line in lines]
+
+
+def _words(pattern: str, text: str) -> list[str]:
+    """What matches in a text that has separators beside, and nothing else."""
+    rest = re.sub(r"[\s,]", "", re.sub(pattern, "", text))
+    if rest:
+        raise ValueError(f'"{rest[:40]}" is not understood in "{text[:80]}"')
+    return re.findall(pattern, text)
 
 
 def _numbers(text: str) -> list[float]:
-    return [float(number) for number in _NUMBER.findall(text)]
+    return [float(number) for number in _words(_NUMBER.pattern, text)]
+
+
+def _css(text: str | None) -> dict[str, str]:
+    return dict(re.findall(r"([\w-]+)\s*:\s*([\w-]*)", text or ""))
+
+
+def _refuse_moving(properties: set[str]) -> None:
+    if properties:
+        raise ValueError(f"CSS sets {', '.join(sorted(properties))}: write it as an attribute of the element")
 
 
 def _length(element: ElementTree.Element, name: str) -> float:
-    return ([*_numbers(element.get(name, "0")), 0.0])[0]
+    text = element.get(name, "0").strip()
+    found = re.fullmatch(rf"({_NUMBER.pattern})\s*([a-z]*)", text)
+    if not found or found[2] not in _PX or (text.startswith("-") and name not in ("x", "y", "cx", "cy")):
+        raise ValueError(f'{name} is "{text}": give a number (0 or more for a size), with px, mm, cm, in, pt, pc or no unit')
+    return float(found[1]) * _PX[found[2]]
 
 
 def _svg_lines(element: ElementTree.Element, matrix: Matrix, deviation: float) -> Iterator[Line]:
     """The closed lines of an element and of those in it."""
-    for kind, text in re.findall(r"(\w+)\s*\(([^)]*)\)", element.get("transform", "")):
-        matrix = _times(matrix, _transform(kind, _numbers(text)))
     kind = element.tag.rpartition("}")[2]
-    if kind in ("defs", "clipPath", "mask", "symbol", "marker", "pattern"):
-        return
-    a, b, c, d, e, f = matrix
-    allowed = deviation / max(1e-12, math.sqrt(abs(a * d - b * c)))  # before the transformation
-    for line in _svg_shape(kind, element, allowed):
+    try:
+        css = _css(element.get("style"))
+        shown = {**element.attrib, **css}
+        if kind in ("defs", "clipPath", "mask", "symbol", "marker", "pattern") or shown.get("display") == "none":
+            return
+        _refuse_moving(_MOVING.intersection(css) | {"transform-origin"}.intersection(shown))
+        if kind in ("use", "svg") or shown.get("visibility") in ("hidden", "collapse"):
+            raise ValueError("it stands for another element: unlink it" if kind == "use" else "a drawing in a drawing is not read" if kind == "svg"
+                             else "it is hidden: leave it out")
+        for what, text in re.findall(r"(\w+)\s*\(([^)]*)\)", element.get("transform", "")):
+            matrix = _times(matrix, _transform(what, _numbers(text)))
+        a, b, c, d, e, f = matrix
+        size = abs(a * d - b * c)
+        lines = _svg_shape(kind, element, deviation / max(1e-12, math.sqrt(size)))  # it deviates before the transformation
+    except (ValueError, IndexError) as trouble:
+        name = f' id="{element.get("id")}"' if "id" in element.keys() else ""
+        raise ValueError(f"<{kind}{name}>: {trouble}") from None
+    for line in lines if size > 0 else []:
         yield [(a * x + c * y + e, b * x + d * y + f) for x, y in line]
     for child in element:
         yield from _svg_lines(child, matrix, deviation)
 
 
 def _transform(kind: str, v: list[float]) -> Matrix:
+    if len(v) not in {"matrix": (6,), "translate": (1, 2), "scale": (1, 2), "rotate": (1, 3)}.get(kind, (len(v),)):
+        raise ValueError(f'the transformation "{kind}" has {len(v)} numbers')
     if kind == "matrix":
         return v[0], v[1], v[2], v[3], v[4], v[5]
     if kind == "translate":
@@ -217,16 +265,23 @@ def _times(m: Matrix, n: Matrix) -> Matrix:
 def _svg_shape(kind: str, element: ElementTree.Element, deviation: float) -> list[Line]:
     if kind == "path":
         return _svg_path(element.get("d", ""), deviation)
-    if kind == "polygon":
+    if kind in ("polygon", "polyline"):
         v = _numbers(element.get("points", ""))
-        return [list(zip(v[::2], v[1::2]))]
+        return _svg_path(f"M{' '.join(map(str, v))}{'z' if kind == 'polygon' else ''}", deviation) if v else []
     if kind == "rect":
         x, y, w, h = (_length(element, name) for name in ("x", "y", "width", "height"))
-        return [[(x, y), (x + w, y), (x + w, y + h), (x, y + h)]]
+        rx, ry = (_length(element, name if name in element.keys() else other) for name, other in (("rx", "ry"), ("ry", "rx")))
+        if w == 0 or h == 0 or rx == 0 or ry == 0:
+            return [[(x, y), (x + w, y), (x + w, y + h), (x, y + h)]] if w > 0 and h > 0 else []
+        rx, ry = min(rx, w / 2), min(ry, h / 2)
+        centres = ((x + w - rx, y + h - ry), (x + rx, y + h - ry), (x + rx, y + ry), (x + w - rx, y + ry))
+        rounded = ((cx + rx * a, cy + ry * b) for k, (cx, cy) in enumerate(centres)
+                   for a, b in _arc(k * math.pi / 2, math.pi / 2, max(rx, ry), deviation))
+        return [list(rounded)]
     if kind in ("circle", "ellipse"):
         cx, cy = _length(element, "cx"), _length(element, "cy")
         rx, ry = (_length(element, name) for name in (("r", "r") if kind == "circle" else ("rx", "ry")))
-        return [[(cx + rx * x, cy + ry * y) for x, y in _arc(0, 2 * math.pi, max(rx, ry), deviation)[:-1]]]
+        return [[(cx + rx * x, cy + ry * y) for x, y in _arc(0, 2 * math.pi, max(rx, ry), deviation)[:-1]]] if rx > 0 and ry > 0 else []
     return []
 
 
@@ -239,7 +294,7 @@ def _arc(begin: float, turn: float, radius: float, deviation: float) -> Line:
 
 def _svg_path(text: str, deviation: float) -> list[Line]:
     """Closed parts of a path's data (SVG 1.1, section 8.3): those that end with Z, or where they began."""
-    words = re.findall(rf"[MmLlHhVvCcSsQqTtAaZz]|{_NUMBER.pattern}", text)
+    words = _words(rf"[MmLlHhVvCcSsQqTtAaZz]|{_NUMBER.pattern}", text)
     need = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
     lines: list[Line] = []
     line: Line = []
@@ -248,9 +303,17 @@ def _svg_path(text: str, deviation: float) -> list[Line]:
         if words[0].isalpha():
             command = words.pop(0)
         kind = command.upper()
-        if kind not in need or (kind == "Z" and not line) or len(words) < need[kind]:
+        v: list[float] = []
+        while len(v) < need.get(kind, 0) and words and not words[0].isalpha():
+            word = words.pop(0)
+            if kind == "A" and len(v) in (3, 4):  # flags may have no separator behind them
+                words[:0] = [word[1:]] if word[1:] else []
+                word = word[0]
+                if word not in "01":
+                    break
+            v.append(float(word))
+        if len(v) != need.get(kind) or (kind == "Z" and not line):
             raise ValueError(f'the path\'s "{command}" is not understood')
-        v = [float(words.pop(0)) for _ in range(need[kind])]
         here = place if command.islower() else (0.0, 0.0)
         if kind == "Z":
             lines.append(line)

@@ -78,6 +78,8 @@ class A_drawing(Case):
     def test_as_svg_has_the_areas_of_its_closed_lines(self):
         shapes = {'<path d="M0 0h20v10H0z"/>': 200, '<polygon points="0,0 10,0 0,10"/>': 50, '<circle cx="9" cy="9" r="5"/>': 25 * math.pi,
                   '<ellipse cx="9" cy="9" rx="5" ry="2"/>': 10 * math.pi, '<path d="M 5,0 A 5 5 0 0 1 5,10 A 5,5 0 1 1 5,0"/>': 25 * math.pi,
+                  '<path d="M5,0A5 5 0 015,10A5 5 0 115,0"/>': 25 * math.pi, '<path d="M0,0a5,5 0 00.5e1-5a5-5 0 00-5 5"/>': 25 * math.pi / 2 - 25,
+                  '<rect x="1" y="2" width="10" height="6" rx="2"/>': 60 - 4 * (4 - math.pi), '<rect width="10" height="6" rx="9" ry="3"/>': 15 * math.pi,
                   '<path d="M0 0 A 8 4 30 0 0 6 6 A 8 4 30 1 0 0 0 z"/>': 32 * math.pi,  # two arcs of one ellipse
                   # Under a parabola a third of the triangle of its control points is left out.
                   '<path d="M0 0 Q 5 10 10 0 z"/>': 100 / 3, '<path d="M0 0 Q 5 10 10 0 T 20 0 L 20 -5 L 0 -5z"/>': 100,
@@ -96,6 +98,32 @@ class A_drawing(Case):
         self.assert_refused('"skewX" is not read', self.svg, '<g transform="skewX(30)"><rect width="1" height="1"/></g>')
         self.assert_refused("no SVG that can be read", self.svg, '<path d="M0"/>')
         self.assert_refused("no SVG that can be read", self.svg, "<rect")
+
+    def test_as_svg_has_lengths_with_units_in_px(self):
+        found, = self.svg('<rect x="1cm" y="-1in" width="10mm" height="36pt"/>')
+        numpy.testing.assert_allclose([found.min(axis=0), found.max(axis=0)], [[96 / 2.54, 98], [192 / 2.54, 146]])
+        file = self.path / "page.svg"
+        file.write_text('<svg width="1in" height="1in"><rect width="96px" height="6pc"/></svg>')
+        numpy.testing.assert_allclose(rouleau.polygons(file, 1e-3)[0].min(axis=0), [0, 0], atol=1e-12)
+
+    def test_as_svg_leaves_out_what_is_not_drawn(self):
+        unseen = '<g style="fill:red; display : none"><rect width="9" height="9"/></g><rect display="none" width="9" height="9"/><circle/>' \
+            '<rect width="0" height="9"/><rect transform="scale(0)" width="9" height="9"/><defs><use href="#a"/></defs>'
+        found, = self.svg(unseen + '<polyline points="0,0 9,0 9,9 0,0"/><polyline points="0,0 9,0 9,9"/>')
+        numpy.testing.assert_allclose(found, [[0, 50], [9, 50], [9, 41]])
+        found, = self.svg('<path d="M0 0h9h0v9L0 0z M0 0h9z"/>')  # points that come twice, and a line that encloses nothing
+        numpy.testing.assert_allclose(found, [[0, 50], [9, 50], [9, 41]])
+
+    def test_as_svg_is_refused_with_the_element_that_is_not_read(self):
+        for body, words in (('<rect width="10%" height="5"/>', '<rect>: width is "10%"'), ('<rect width="nan" height="5"/>', '<rect>: width is "nan"'),
+                            ('<circle r="-1"/>', '<circle>: r is "-1"'), ('<rect width="2em" height="5"/>', 'width is "2em"'),
+                            ('<use id="b" href="#a" x="30"/>', '<use id="b">: it stands for another'), ('<svg x="3"/>', "<svg>: a drawing in a drawing"),
+                            ('<g id="c" style="transform:translate(20px,0)"/>', '<g id="c">: CSS sets transform'), ("<g visibility='hidden'/>", "is hidden"),
+                            ('<defs><style>.a{fill:red;display:none}</style></defs>', "CSS sets display"),
+                            ('<g transform="rotate(30,5)"/>', '"rotate" has 2 numbers'), ('<path d="M0 0 L nan 5 4 4z"/>', '<path>: "nn" is not understood'),
+                            ('<path d="M0 0A5 5 0 2 1 5 5z"/>', '"A" is not understood'), ('<polygon points="0,0 9,0 9"/>', '"L" is not understood')):
+            with self.subTest(body):
+                self.assert_refused(words, self.svg, '<rect style="stroke-width:2" width="9" height="5"/>' + body)
 
     def test_as_dxf_has_its_closed_lines_and_those_that_meet(self):
         if not importlib.util.find_spec("ezdxf"):
