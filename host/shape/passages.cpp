@@ -16,6 +16,10 @@ namespace {
 
 using core::Vec;
 
+/// Of the domain's size: as meshes are joined where they end (core/geometry/border.cpp), and files of single precision
+/// round coordinates to less.
+constexpr double one_place = 1e-6;
+
 /// Runs of fluid nodes along x, joined to those beside them; each knows how many periods it lies from its parent.
 class Pools {
  public:
@@ -75,7 +79,8 @@ class Survey {
   Survey(core::RegionPointer<D> region, const core::Domain<D>& domain)
       : domain_(domain),
         shapes_(std::move(region)),
-        region_(core::intersection<D>({shapes_, core::between_walls(domain)})) {
+        region_(core::intersection<D>({shapes_, core::between_walls(domain)})),
+        touching_(one_place * *std::ranges::max_element(domain.size)) {
     long below = 1;
     for (int k = 0; k < D; ++k) stride_[k] = std::exchange(below, below * domain.size[k]);
     int count = 1;
@@ -98,7 +103,8 @@ class Survey {
   [[nodiscard]] std::pair<double, long> narrowest() const {
     std::pair<double, long> least{std::numeric_limits<double>::infinity(), -1};
     for (const auto& [node, ridge] : ridges_)
-      if (ridge.width > 0 && std::pair(ridge.width, node) < least && leads_on(node, ridge)) least = {ridge.width, node};
+      if (ridge.width > touching_ && std::pair(ridge.width, node) < least && leads_on(node, ridge))
+        least = {ridge.width, node};
     return least;
   }
   [[nodiscard]] Node node_of(long number) const {
@@ -242,6 +248,7 @@ class Survey {
 
   core::Domain<D> domain_;
   core::RegionPointer<D> shapes_, region_;
+  double touching_;         ///< walls nearer than so many spacings touch
   std::vector<Node> ways_;  ///< to half of the nodes around one, those that follow it
   std::array<long, D> stride_{};
   std::vector<Place> layer_, last_layer_, first_layer_;
