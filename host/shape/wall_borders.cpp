@@ -48,12 +48,13 @@ core::Border<D> imaged(core::Border<D> border, const core::Domain<D>& domain) {
   return border;
 }
 
-/// Of a border that ends at an opening: there it goes on as its own mirror image.
+/// Of a border that ends at an opening, with a lid there or open: it goes on as its own mirror image.
 template <int D>
 core::Border<D> opened(core::Border<D> border, const core::Domain<D>& domain) {
   const int axis = domain.open_axis;
   if (axis < 0) return border;
   const core::Border<D> own = border;
+  const std::vector<Vec<D>> open = core::open_sides(own);
   border.facets.clear();
   const double size = domain.size[axis], off = rounding * size;
   std::vector<bool> is_end(own.facets.size());
@@ -62,7 +63,9 @@ core::Border<D> opened(core::Border<D> border, const core::Domain<D>& domain) {
     std::vector<bool> here(own.facets.size());
     for (std::size_t i = 0; i < own.facets.size(); ++i)
       here[i] = std::ranges::all_of(own.facets[i], at_plane), is_end[i] = is_end[i] || here[i];
-    if (std::ranges::none_of(here, [](bool is) { return is; })) continue;
+    if (std::ranges::none_of(here, [](bool is) { return is; }) &&
+        std::ranges::none_of(open, [&](const Vec<D>& side) { return std::abs(side[axis] - plane) <= off; }))
+      continue;
     std::vector<int> image;
     for (int i = 0; i < static_cast<int>(own.corners.size()); ++i) {
       image.push_back(at_plane(i) ? i : static_cast<int>(border.corners.size()));
@@ -106,14 +109,15 @@ double enclosed(const core::Border<D>& border, int axis) {
   return sum;
 }
 
-/// Of sides that are not joined only those in the domain are at fault: images end beyond it.
+/// Of sides that are not joined only those in the domain are at fault: images end beyond it, mirrored ones too.
 template <int D>
 std::vector<Vec<D>> faulty_sides(const core::Border<D>& border, const core::Domain<D>& domain) {
   std::vector<Vec<D>> open = core::open_sides(border);
   std::erase_if(open, [&](const Vec<D>& side) {
     for (int k = 0; k < D; ++k) {
-      const double period = domain.period(k), off = rounding * period;
-      if (period > 0 && (side[k] < -0.5 - off || side[k] > period - 0.5 + off)) return true;
+      const double size = domain.size[k], off = rounding * size;
+      const bool goes_on = domain.periodic[k] || k == domain.open_axis;
+      if (goes_on && (side[k] < -0.5 - off || side[k] > size - 0.5 + off)) return true;
     }
     return false;
   });
@@ -141,7 +145,8 @@ void require_closed(const scene::SceneFields& fields, const std::string& pointer
   fields.refuse(pointer,
                 "the border is not closed: " + std::to_string(open.size()) +
                     (D > 2 ? " edges do not join two triangles that run the same way round" : " ends are open") +
-                    ", at " + words + "\nclose it; along a periodic axis, let it end at both ends of the domain");
+                    ", at " + words +
+                    "\nclose it; along a periodic axis, or one with openings, let it end at both ends of the domain");
 }
 
 void weld_nearby(core::TriangleSurface& surface, const std::filesystem::path& file) {
@@ -246,7 +251,7 @@ core::RegionPointer<D> closed_region(const scene::SceneFields& fields, const std
   for (int k = 0; k < D; ++k) {
     const auto [least, most] = std::ranges::minmax(border.corners, {}, [k](const Vec<D>& corner) { return corner[k]; });
     if (domain.period(k) > 0) require_reach(fields, pointer, k, domain.period(k), least[k], most[k], unit);
-    if (passes(border, domain, held)) held = k;
+    if (held == domain.open_axis || passes(border, domain, held)) held = k;
     if (domain.period(k) > 0 && !passes(border, domain, k) && most[k] - least[k] > domain.period(k))
       fields.refuse(pointer,
                     "it is longer than the domain along " + axis_name(k) +

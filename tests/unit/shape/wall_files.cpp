@@ -168,6 +168,16 @@ TEST_CASE("a vessel from a mesh has the distances of what it was made of, throug
     const double area = around / 2.0 * 64 * std::sin(2 * pi / around);
     CHECK(scene.domain.content() == Approx(area * 40 * um * um * um).epsilon(1e-4));
   }
+  const std::string open =
+      R"("x": {"lower": {"inlet": {"pressure": "1 Pa"}}, "upper": {"outlet": {"pressure": "0 Pa"}}}, )";
+  for (const bool closed : {true, false}) {
+    scenes.folder.write("vessel.off", off(tube(8, 40, 96, closed)));
+    const auto scene = scenes.read(space + open + within(mesh));
+    for (const double x : {0.0, 0.4, 20.0, 39.9}) CHECK(distance(scene, x, 10, 13) == Approx(5).margin(0.01));
+    CHECK(scene.domain.passages->through);
+  }
+  scenes.folder.write("vessel.off", off(tube(8, 39, 12, false)));
+  CHECK_THAT(scenes.message(space + open + within(mesh)), Contains("the border is not closed"));
   scenes.folder.write("vessel.off", off(core::unit_sphere(8)));
   const auto ball = scenes.read(
       space + within(R"({"mesh": {"file": "vessel.off", "unit": "7 um", "at": ["39 um", "10 um", "10 um"]}})"));
