@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "base/text.hpp"
@@ -149,6 +150,69 @@ void require_closed(const scene::SceneFields& fields, const std::string& pointer
                     "\nclose it; along a periodic axis, or one with openings, let it end at both ends of the domain");
 }
 
+/// A place that a surface encloses more than once, or inside out; none: it neither crosses itself nor has parts that
+/// overlap, where they are wider than 1/256 of it. Counted along an axis at whose ends it is closed, on lines at
+/// irrational places. In each plane of lines a side is cut alike for both of its triangles, so that none is missed.
+std::optional<Vec<3>> overlap(const core::Border<3>& border, int axis) {
+  constexpr int lines = 256;
+  constexpr double offset[2] = {0.6180339887498949, 0.4142135623730951};
+  struct Crossing {
+    int line;
+    double height;
+    int enters;  ///< -1: leaves
+    auto operator<=>(const Crossing&) const = default;
+  };
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  Eigen::AlignedBox3d box;
+  for (const Vec<3>& corner : border.corners) box.extend(corner);
+  if (!(box.sizes().minCoeff() > 0)) return {};
+  const Vec<3> step = box.sizes() / lines;
+  const auto line_behind = [&](int along, double place, double off) {  // the first one
+    return std::clamp(static_cast<int>(std::ceil((place - box.min()[along]) / step[along] - off)), 0, lines);
+  };
+  std::vector<Crossing> crossings;
+  for (const auto& facet : border.facets) {
+    const auto [least, most] =
+        std::minmax({border.corners[facet[0]][u], border.corners[facet[1]][u], border.corners[facet[2]][u]});
+    for (int i = line_behind(u, least, offset[0]); i < line_behind(u, most, offset[0]); ++i) {
+      const double plane = box.min()[u] + (i + offset[0]) * step[u];
+      Vec<3> cut[2] = {box.min(), box.min()};  // by sides that go down along u, and up
+      for (int k = 0; k < 3; ++k) {
+        const auto [a, b] = std::minmax(facet[k], facet[(k + 1) % 3]);
+        const Vec<3>&from = border.corners[a], &to = border.corners[b];
+        const bool up = (from[u] <= plane) == (a == facet[k]);
+        if ((from[u] <= plane) != (to[u] <= plane))
+          cut[up ? 1 : 0] = from + (plane - from[u]) / (to[u] - from[u]) * (to - from);
+      }
+      const bool faces_up = cut[1][v] < cut[0][v];
+      const Vec<3>&lower = cut[faces_up ? 1 : 0], &upper = cut[faces_up ? 0 : 1];
+      for (int j = line_behind(v, lower[v], offset[1]); j < line_behind(v, upper[v], offset[1]); ++j) {
+        const double share = (box.min()[v] + (j + offset[1]) * step[v] - lower[v]) / (upper[v] - lower[v]);
+        crossings.push_back({i * lines + j, lower[axis] + share * (upper[axis] - lower[axis]), faces_up ? -1 : 1});
+      }
+    }
+  }
+  std::ranges::sort(crossings);
+  crossings.push_back({-1, 0, 0});
+  const double touching = rounding * box.sizes().maxCoeff();
+  std::optional<Vec<3>> found;
+  int inside = 0;
+  for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
+    const Crossing &here = crossings[i], &next = crossings[i + 1];
+    inside += here.enters;
+    if (next.line != here.line) {
+      if (found && inside == 0) return found;  // on other lines it is open: they pass by its ends
+      found.reset(), inside = 0;
+    } else if (!found && next.height - here.height > touching && (inside < 0 || inside > 1)) {
+      Vec<3>& place = found.emplace();
+      place[u] = box.min()[u] + (here.line / lines + offset[0]) * step[u];
+      place[v] = box.min()[v] + (here.line % lines + offset[1]) * step[v];
+      place[axis] = (here.height + next.height) / 2;
+    }
+  }
+  return {};
+}
+
 void weld_nearby(core::TriangleSurface& surface, const std::filesystem::path& file) {
   try {
     weld(surface, weld_reach(surface));
@@ -258,11 +322,19 @@ core::RegionPointer<D> closed_region(const scene::SceneFields& fields, const std
                         ", which is periodic, and would lie over its own image\nlet it begin at 0 um and end at " +
                         number(domain.period(k) * unit * 1e6) + " um, or make it shorter");
   }
+  std::optional<Vec<D>> overlapping;
+  if constexpr (D == 3) {
+    if (!passes(border, domain, held)) overlapping = overlap(border, held);
+  }
   border = imaged(opened(std::move(border), domain), domain);
   if (border.facets.empty()) return everything<D>();
   require_closed(fields, pointer, border, domain, unit);
   if (!(enclosed(border, held) > 0))
     fields.refuse(pointer, "the surface is inside out: its triangles run clockwise seen from outside\nturn them over");
+  if (overlapping)
+    fields.refuse(pointer, "the surface crosses itself, or parts of it overlap or are inside out, at " +
+                               in_um<D>(*overlapping, unit) +
+                               "\njoin its parts to one surface, or give each a file and take their \"union\"");
   try {
     return std::make_shared<core::FacetedRegion<D>>(std::move(border));
   } catch (const std::invalid_argument& error) {

@@ -7,6 +7,7 @@
 #include "core/surface/triangle_surface.hpp"
 #include "plan/read_scene.hpp"
 #include "scratch_folder.hpp"
+#include "shape/formats/mesh_file.hpp"
 #include "unit/png.hpp"
 
 using namespace rouleau;
@@ -200,6 +201,42 @@ TEST_CASE("a mesh is turned by its axis and angle as cells are", "[optimised]") 
           R"({"mesh": {"file": "box.off", "unit": "1 um", "at": ["20 um", "10 um", "10 um"], "axis": [0, 1, 0], "angle": "90 deg"}})"));
   CHECK(distance(about, 20, 10, 15) > 0);
   CHECK(distance(about, 20, 15, 10) < 0);
+}
+
+TEST_CASE(
+    "a mesh of parts that overlap, lie in each other or are inside out is refused, one of parts that touch is not") {
+  const Scenes scenes;
+  const std::string mesh = R"({"mesh": {"file": "parts.off", "unit": "1 um", "at": ["20 um", "10 um", "10 um"]}})";
+  const auto said = [&](const core::Vec<3>& at, double size, bool turned) {
+    core::TriangleSurface parts = core::ellipsoid(6, {6, 6, 6});
+    const core::Vec<3> corner[] = {{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {0, 1, 1},
+                                   {1, 0, 0}, {1, 0, 1}, {1, 1, 0}, {1, 1, 1}};
+    for (const auto& [i, j, k] : std::vector<std::array<int, 3>>{{0, 1, 3},
+                                                                 {0, 3, 2},
+                                                                 {4, 6, 7},
+                                                                 {4, 7, 5},
+                                                                 {0, 4, 5},
+                                                                 {0, 5, 1},
+                                                                 {2, 3, 7},
+                                                                 {2, 7, 6},
+                                                                 {0, 2, 6},
+                                                                 {0, 6, 4},
+                                                                 {1, 5, 7},
+                                                                 {1, 7, 3}}) {
+      const int first = static_cast<int>(parts.nodes.size());
+      parts.triangles.push_back({first, first + (turned ? 2 : 1), first + (turned ? 1 : 2)});
+      for (const int c : {i, j, k}) parts.nodes.push_back(at + size * corner[c]);
+    }
+    shape::weld(parts, 0);
+    scenes.folder.write("parts.off", off(parts));
+    return scenes.message(space + within(mesh));
+  };
+  CHECK_THAT(said({5, -1, -1}, 3, false),
+             Contains("/within/mesh/file") && Contains("crosses itself") && Contains("(25."));
+  CHECK_THAT(said({-1, -1, -1}, 2, false), Contains("overlap"));
+  CHECK_THAT(said({10, -1, -1}, 5, true), Contains("inside out, at (30.") && Contains("\"union\""));
+  CHECK(said({-1, -1, -1}, 2, true).empty());  // a hole
+  CHECK(said({6, -2, -2}, 5, false).empty());  // beside it
 }
 
 TEST_CASE("meshes that are open, inside out, or do not fit their image are refused with the place") {
