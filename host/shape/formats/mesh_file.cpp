@@ -75,7 +75,7 @@ core::TriangleSurface read_triangles(const std::filesystem::path& file) {
   Words words(std::move(text), file.string());
   core::TriangleSurface surface = read(words);
   const auto refuse = [&](const std::string& problem) {
-    throw Error(Cause::bad_input, rouleau::Place{file.string()}, problem);
+    throw Error(Cause::bad_input, rouleau::Place{file.string()}, problem, {write_anew});
   };
   const int nodes = static_cast<int>(surface.nodes.size());
   for (int i = 0; i < nodes; ++i)

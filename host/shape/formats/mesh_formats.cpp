@@ -92,12 +92,12 @@ core::TriangleSurface read_stl_text(Words& words) {
 core::TriangleSurface read_stl_binary(Words& words) {
   static_assert(std::endian::native == std::endian::little);
   core::TriangleSurface surface;
-  words.bytes(80, "its header");
+  words.bytes(80, "the header of a binary STL");
   std::uint32_t faces = 0;
   std::memcpy(&faces, words.bytes(4, "the number of faces").data(), sizeof faces);
   for (std::uint32_t f = 0; f < faces; ++f) {
     std::array<float, 12> numbers{};
-    std::memcpy(numbers.data(), words.bytes(50, "its faces").data(), sizeof numbers);
+    std::memcpy(numbers.data(), words.bytes(50, "its faces, read as binary STL").data(), sizeof numbers);
     const int first = static_cast<int>(surface.nodes.size());
     for (int k = 3; k < 12; k += 3) surface.nodes.emplace_back(numbers[k], numbers[k + 1], numbers[k + 2]);
     surface.triangles.push_back({first, first + 1, first + 2});

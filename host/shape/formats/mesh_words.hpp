@@ -13,13 +13,16 @@
 
 namespace rouleau::shape {
 
+/// What to do about a mesh file that is damaged, whatever is wrong in it.
+inline constexpr const char* write_anew = "write the mesh anew, as OBJ, OFF, PLY or STL";
+
 /// A file's text, read word by word.
 class Words {
  public:
   Words(std::string text, std::string name) : text_(std::move(text)), name_(std::move(name)) {}
 
   [[noreturn]] void refuse(const std::string& problem) const {
-    throw Error(Cause::bad_input, {name_, {}, line_, 0}, problem);
+    throw Error(Cause::bad_input, {name_, {}, line_, 0}, problem, {write_anew});
   }
   [[nodiscard]] std::size_t size() const { return text_.size(); }
   [[nodiscard]] bool at_end() const { return at_ == text_.size(); }

@@ -182,7 +182,7 @@ TEST_CASE("a file that holds no closed surface is refused with its place and the
   };
   CHECK_THAT(refused_face("1 2 3").what(), Contains("has the node 3, and there are 2 before it"));
   CHECK_THAT(refused_face("1 2 -3").what(), Contains("has the node -3"));
-  CHECK_THAT(refused_face("1 2 0").what(), Contains("has the node 0"));
+  CHECK_THAT(refused_face("1 2 0").what(), Contains("has the node 0") && Contains("write the mesh anew"));
   CHECK_THAT(refused_face("1 2 x/1").what(), Contains("\"x\" stands where a node is expected"));
   CHECK_THAT(refused_face("1 2 99999999999999999999").what(), Contains("stands where a node is expected"));
   CHECK_THAT(refused_face("1 2").what(), Contains("a face has 2 corners"));
@@ -192,7 +192,8 @@ TEST_CASE("a file that holds no closed surface is refused with its place and the
   const std::string ply = ply_of(sphere, true), stl = stl_of(sphere, true);
   CHECK_THAT(file.refusal(ply.substr(0, ply.size() - 9)).what(), Contains("ends within its data"));
   CHECK_THAT(file.refusal(ply.substr(0, 45)).what(), Contains("ends within its header"));
-  CHECK_THAT(file.refusal(stl.substr(0, stl.size() - 9)).what(), Contains("ends within its faces"));
+  CHECK_THAT(file.refusal(stl.substr(0, stl.size() - 9)).what(),
+             Contains("ends within its faces, read as binary STL") && Contains("write the mesh anew"));
   // A sphere seen from inside.
   core::TriangleSurface inside = sphere;
   for (auto& triangle : inside.triangles) std::swap(triangle[0], triangle[1]);
