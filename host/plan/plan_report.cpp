@@ -11,6 +11,7 @@
 #include "scene/lattice.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/extent.hpp"
+#include "shape/passages.hpp"
 #include "shape/random_cells.hpp"
 
 namespace rouleau::plan {
@@ -186,7 +187,18 @@ bool is_shared(const scene::Scene& scene, double border) {
 }
 
 /// Of walls of any shape.
-void add_wall_warnings(const scene::Domain& domain, std::vector<std::string>& warnings) {
+void add_wall_warnings(const scene::Scene& scene, std::vector<std::string>& warnings) {
+  const scene::Domain& domain = scene.domain;
+  if (domain.passages && shape::unseen_wall(*domain.passages).thickness > 0) {
+    constexpr double sure = 1.5;  // links are up to the root of 2 spacings long
+    const auto& [thickness, at] = shape::unseen_wall(*domain.passages);
+    const double spacing = scene::lattice_spacing(scene);
+    warnings.push_back(
+        "the wall at (" + scene::by_axes(at, 1e6, 5, " um", ", ") + ") is " + number(thickness * spacing * 1e6, 3) +
+        " um thick, and the flow goes through it between two nodes of the lattice; make it " +
+        number(sure * spacing * 1e6, 3) + " um thick, or take " +
+        number(std::ceil(sure / thickness * domain.nodes[0]), 12) + " nodes along x and as many more along the others");
+  }
   if (const auto& passages = domain.passages; passages && passages->apart > 0)
     warnings.push_back(number(passages->apart, 12) +
                        " nodes of fluid have no way to most others, such as the one at (" +
@@ -228,7 +240,7 @@ std::vector<std::string> warnings_of(const Plan& plan, const std::vector<Limit>&
                        std::to_string(scene::most_nodes_of_block) + "; start the run on " + std::to_string(ranks) +
                        " ranks or more (docs/ranks.md)");
   }
-  add_wall_warnings(scene.domain, warnings);
+  add_wall_warnings(scene, warnings);
   const double spacing = scene::lattice_spacing(scene);
   for (const scene::FluidLayer& layer : scene.fluid.layers) {
     for (const double border : {layer.from, layer.to}) {

@@ -113,9 +113,11 @@ class Survey {
     return node;
   }
   Pools pools;
-  std::vector<long> first_of_run;  ///< nodes
-  std::vector<double> open_nodes;  ///< at each place along the flow axis
-  double beside_walls = 0;         ///< nodes within a spacing of the region's border
+  std::vector<long> first_of_run;     ///< nodes
+  std::vector<double> open_nodes;     ///< at each place along the flow axis
+  double beside_walls = 0;            ///< nodes within a spacing of the region's border
+  double unseen = 0;                  ///< thickness of the thickest wall that a link between nodes of fluid crosses
+  Vec<D> unseen_at = Vec<D>::Zero();  ///< in it
 
  private:
   struct Place {
@@ -216,9 +218,22 @@ class Survey {
     double between = 0;
     for (int k = 0; k < D; ++k) between += way[k] * across[k];
     const double width = a.value + b.value + between;
+    if (a.value > 0 && b.value > 0 && -width > std::max(unseen, touching_)) add_unseen(node, a, b, way, -width);
     if (between <= 0 || width > widest_told) return;
     const auto [known, is_new] = ridges_.try_emplace(node, Ridge{width, across.normalized()});
     if (!is_new && width < known->second.width) known->second = {width, across.normalized()};
+  }
+
+  /// Not at the tips of wedges of more than 8 degrees, which are thin by nature. Where regions are joined a distance may
+  /// be too short: then the way is open.
+  void add_unseen(long node, const Place& a, const Place& b, const Node& way, double thickness) {
+    constexpr double parallel = -0.99;
+    Vec<D> along, place;
+    const Node from = node_of(node);
+    for (int k = 0; k < D; ++k) along[k] = way[k], place[k] = from[k];
+    if (along.squaredNorm() > 2 || a.gradient.dot(b.gradient) > parallel) return;  // links lead no farther
+    place += (a.value + thickness / 2) / (a.value + thickness + b.value) * along;
+    if (region_->distance(place).value < 0) unseen = thickness, unseen_at = place;
   }
 
   [[nodiscard]] bool leads_on(long number, const Ridge& ridge) const {
@@ -257,7 +272,7 @@ class Survey {
 };
 
 template <int D>
-scene::Passages surveyed(const scene::Scene& scene) {
+SurveyedPassages surveyed(const scene::Scene& scene) {
   const core::RegionPointer<D> region = scene::fluid_region<D>(scene);
   Survey<D> survey(region, scene::lattice_domain<D>(scene));
   const double spacing = scene::lattice_spacing(scene);
@@ -267,7 +282,12 @@ scene::Passages surveyed(const scene::Scene& scene) {
     for (int k = 0; k < D; ++k) place[k] = units::coordinate(node[k], spacing);
     return place;
   };
-  scene::Passages found;
+  SurveyedPassages found;
+  found.unseen.thickness = survey.unseen;
+  if (survey.unseen > 0) {
+    found.unseen.at = scene::Vector::filled(D, 0);
+    for (int k = 0; k < D; ++k) found.unseen.at[k] = (survey.unseen_at[k] + 0.5) * spacing;
+  }
   // On a coarse lattice narrow passages hide between nodes: they are looked for on a finer one.
   constexpr double many = 1 << 20;
   int finer = 1;
@@ -310,7 +330,7 @@ void survey_walls(scene::Scene& scene, const std::shared_ptr<const scene::Passag
   scene.domain.passages = known;
   if (known) return;
   scene::in_dimension(scene.domain.dimension(), [&]<int D>(std::integral_constant<int, D>) {
-    scene.domain.passages = std::make_shared<const scene::Passages>(surveyed<D>(scene));
+    scene.domain.passages = std::make_shared<const SurveyedPassages>(surveyed<D>(scene));
   });
 }
 

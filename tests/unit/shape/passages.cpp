@@ -107,6 +107,34 @@ TEST_CASE("shapes that touch flush, but for rounding, leave no passage, and a ha
   CHECK(beside("30 um", "0 um", "34.11 um") == Approx(0.02).epsilon(0.01));
 }
 
+TEST_CASE(
+    "a wall between two nodes of the fluid is told, where it holds none; tips of wedges and thick walls are not") {
+  const auto unseen = [](const std::string& obstacle) {
+    const test::ScratchFolder folder;
+    const auto file =
+        folder.write("scene.json", R"({"rouleau": 1, "domain": {)" + plane + closed + R"("obstacles": [)" + obstacle +
+                                       R"(]}, "fluid": {"density": "1 g/cm3", "viscosity": "1 cP"},
+        "stages": [{"name": "rest", "duration": "1 ms"}]})");
+    return shape::unseen_wall(*plan::read_scene(file).domain.passages);
+  };
+  const auto box = [](double left, double lower, double right, double upper) {
+    const auto place = [](double x, double y) {
+      return "[" + std::to_string(x) + "e-6, " + std::to_string(y) + "e-6]";
+    };
+    return R"({"box": {"lower": )" + place(left, lower) + R"(, "upper": )" + place(right, upper) + "}}";
+  };
+  const auto dam = unseen(box(10.13, 0, 10.32, 20));
+  CHECK(dam.thickness == Approx(0.76));
+  CHECK(dam.at.x() == Approx(10.225 * um));
+  CHECK(unseen(box(0, 9.9, 40, 10.05)).thickness == Approx(0.6));
+  CHECK(unseen(box(10, 9.9, 20, 10.05)).thickness == Approx(0.6));
+  CHECK(unseen(box(10.13, 0, 10.52, 20)).thickness == 0);
+  CHECK(unseen(box(10.13, 0, 10.23, 9) + ", " + box(10.23, 0, 10.53, 9)).thickness == 0);
+  const std::string from = R"({"outline": {"points": [["10 um", "10 um"], ["20 um", ")", to = R"(20 um", "11 um"]]}})";
+  CHECK(unseen(from + R"(9 um"], [")" + to).thickness == 0);      // 11 degrees
+  CHECK(unseen(from + R"(10.9 um"], [")" + to).thickness > 0.2);  // half a degree
+}
+
 TEST_CASE("a tube's width is its diameter, and a ball in it leaves the ring around it") {
   const std::string tube = R"({"cylinder": {"axis": "x", "center": ["5 um", "5 um"], "radius": "4.5 um"}})";
   CHECK(passages(space + R"("walls": {"within": )" + tube + "}").narrowest == Approx(36).epsilon(0.01));
