@@ -232,15 +232,42 @@ class Builder {
   const scene::SceneFields& fields_;
 };
 
+template <int D, class Visit>
+void halve(Vec<D> middle, Vec<D> half, Visit visit) {
+  int longest = 0;
+  half.maxCoeff(&longest);
+  half[longest] /= 2;
+  middle[longest] -= half[longest];
+  visit(middle, half);
+  middle[longest] += 2 * half[longest];
+  visit(middle, half);
+}
+
+/// Whether a region has something in a box, or comes near to it.
+template <int D>
+bool reaches(const core::Region<D>& region, const Vec<D>& middle, const Vec<D>& half, int halvings) {
+  const double found = region.distance(middle).value;
+  if (found > 0 || found <= -half.norm() || halvings == 0) return found > -half.norm();
+  bool any = false;
+  halve<D>(middle, half, [&](const Vec<D>& m, const Vec<D>& h) { any = any || reaches(region, m, h, halvings - 1); });
+  return any;
+}
+
+/// Half of each side of a domain.
+template <int D>
+Vec<D> half_of(const core::Domain<D>& domain) {
+  Vec<D> half;
+  for (int k = 0; k < D; ++k) half[k] = 0.5 * domain.size[k];
+  return half;
+}
+
 /// What fluid fills of a domain.
 template <int D>
 class Measure {
  public:
   Measure(const core::Region<D>& region, const core::Domain<D>& domain)
       : region_(region), planes_(core::between_walls(domain)) {
-    Vec<D> half;
-    for (int k = 0; k < D; ++k) half[k] = 0.5 * domain.size[k];
-    const Vec<D> middle = half - Vec<D>::Constant(0.5);
+    const Vec<D> half = half_of(domain), middle = half - Vec<D>::Constant(0.5);
     content = core::content_of<D>(region, middle, half, content_halvings);
     seek_width(middle, half, content_halvings);
   }
@@ -248,23 +275,12 @@ class Measure {
   double width = 0;  ///< twice the largest distance to a wall, to 1 %
 
  private:
-  template <class Visit>
-  static void halve(Vec<D> middle, Vec<D> half, Visit visit) {
-    int longest = 0;
-    half.maxCoeff(&longest);
-    half[longest] /= 2;
-    middle[longest] -= half[longest];
-    visit(middle, half);
-    middle[longest] += 2 * half[longest];
-    visit(middle, half);
-  }
-
   void seek_width(const Vec<D>& middle, const Vec<D>& half, int halvings) {
     constexpr double enough = 1.01;
     const double found = std::min(region_.distance(middle).value, planes_->distance(middle).value);
     width = std::max(width, 2 * found);
     if (halvings == 0 || 2 * (found + half.norm()) <= enough * width) return;
-    halve(middle, half, [&](const Vec<D>& m, const Vec<D>& h) { seek_width(m, h, halvings - 1); });
+    halve<D>(middle, half, [&](const Vec<D>& m, const Vec<D>& h) { seek_width(m, h, halvings - 1); });
   }
 
   const core::Region<D>& region_;
@@ -305,6 +321,24 @@ void build_walls(scene::Scene& scene, Faults& faults) {
     scene::in_dimension(scene.domain.dimension(),
                         [&]<int D>(std::integral_constant<int, D>) { build<D>(scene.domain, fields, faults); });
   });
+}
+
+std::vector<std::string> obstacles_outside(const scene::Scene& scene) {
+  std::vector<std::string> outside;
+  if (scene.domain.obstacles.empty()) return outside;
+  Faults faults;
+  const scene::SceneFields fields(*scene.document, faults);
+  scene::in_dimension(scene.domain.dimension(), [&]<int D>(std::integral_constant<int, D>) {
+    const Builder<D> builder(scene.domain, common_unit(scene.domain), fields);
+    const Vec<D> half = half_of(builder.domain());
+    for (const WallShape& obstacle : scene.domain.obstacles) {
+      fields.attempt([&] {
+        if (!reaches<D>(*builder.of(obstacle), half - Vec<D>::Constant(0.5), half, content_halvings))
+          outside.push_back(obstacle.pointer);
+      });
+    }
+  });
+  return outside;
 }
 
 }  // namespace rouleau::shape

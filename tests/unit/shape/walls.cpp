@@ -124,6 +124,19 @@ TEST_CASE("shapes are joined: what lies in any, in each, or in the first alone")
   CHECK(rest.domain.content() == Approx((400 - lens) * um * um).epsilon(1e-5));
 }
 
+TEST_CASE("obstacles that lie wholly outside of the domain are found, near it or far away") {
+  const auto outside = [](const std::string& center, const std::string& radius) {
+    return shape::obstacles_outside(scene_with(
+        plane + closed + R"("obstacles": [{"sphere": {"center": ["20 um", "0 um"], "radius": "3 um"}}, {"sphere":
+        {"center": ["20 um", ")" +
+        center + R"("], "radius": ")" + radius + R"("}}])"));
+  };
+  CHECK(outside("50 um", "1 um") == std::vector<std::string>{"/domain/obstacles/1"});
+  CHECK(outside("25.1 um", "5 um") == std::vector<std::string>{"/domain/obstacles/1"});
+  CHECK(outside("25.1 um", "5.2 um").empty());
+  CHECK(outside("10.1 um", "0.3 um").empty());
+}
+
 TEST_CASE("walls that leave no fluid, or none at all, are refused, and what does not fit its image") {
   const auto message = [](const std::string& domain) -> std::string {
     try {
