@@ -191,9 +191,7 @@ bool is_shared(const scene::Scene& scene, double border) {
 void add_wall_warnings(const scene::Scene& scene, std::vector<std::string>& warnings) {
   const scene::Domain& domain = scene.domain;
   for (const std::string& pointer : shape::obstacles_outside(scene))
-    warnings.push_back(pointer +
-                       ", an obstacle, lies wholly outside of the domain and does nothing; lengths count from the "
-                       "domain's lower corner. Move it, or leave it out");
+    warnings.push_back(pointer + " lies wholly outside of the domain; move it, or leave it out");
   if (domain.passages && shape::unseen_wall(*domain.passages).thickness > 0) {
     constexpr double sure = 1.5;  // links are up to the root of 2 spacings long
     const auto& [thickness, at] = shape::unseen_wall(*domain.passages);

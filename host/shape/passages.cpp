@@ -224,8 +224,8 @@ class Survey {
     if (!is_new && width < known->second.width) known->second = {width, across.normalized()};
   }
 
-  /// Not at the tips of wedges of more than 8 degrees, which are thin by nature. Where regions are joined a distance may
-  /// be too short: then the way is open.
+  /// Not at the tips of wedges of more than 8 degrees, which are thin by nature. Where regions are joined a distance
+  /// may be too short: then the way is open.
   void add_unseen(long node, const Place& a, const Place& b, const Node& way, double thickness) {
     constexpr double parallel = -0.99;
     Vec<D> along, place;

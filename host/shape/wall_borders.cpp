@@ -150,6 +150,9 @@ void require_closed(const scene::SceneFields& fields, const std::string& pointer
                     "\nclose it; along a periodic axis, or one with openings, let it end at both ends of the domain");
 }
 
+/// Of outlines that is looked for where they are read (scene/scene_walls.cpp).
+std::optional<Vec<2>> overlap(const core::Border<2>&, int) { return {}; }
+
 /// A place that a surface encloses more than once, or inside out; none: it neither crosses itself nor has parts that
 /// overlap, where they are wider than 1/256 of it. Counted along an axis at whose ends it is closed, on lines at
 /// irrational places. In each plane of lines a side is cut alike for both of its triangles, so that none is missed.
@@ -322,10 +325,7 @@ core::RegionPointer<D> closed_region(const scene::SceneFields& fields, const std
                         ", which is periodic, and would lie over its own image\nlet it begin at 0 um and end at " +
                         number(domain.period(k) * unit * 1e6) + " um, or make it shorter");
   }
-  std::optional<Vec<D>> overlapping;
-  if constexpr (D == 3) {
-    if (!passes(border, domain, held)) overlapping = overlap(border, held);
-  }
+  const std::optional<Vec<D>> overlapping = passes(border, domain, held) ? std::nullopt : overlap(border, held);
   border = imaged(opened(std::move(border), domain), domain);
   if (border.facets.empty()) return everything<D>();
   require_closed(fields, pointer, border, domain, unit);
