@@ -234,7 +234,7 @@ TEST_CASE(
   CHECK_THAT(said({5, -1, -1}, 3, false),
              Contains("/within/mesh/file") && Contains("crosses itself") && Contains("(25."));
   CHECK_THAT(said({-1, -1, -1}, 2, false), Contains("overlap"));
-  CHECK_THAT(said({10, -1, -1}, 5, true), Contains("inside out, at (30.") && Contains("\"union\""));
+  CHECK_THAT(said({10, -1, -1}, 5, true), Contains("inside out, at (32.5 um") && Contains("\"union\""));
   CHECK(said({-1, -1, -1}, 2, true).empty());  // a hole
   CHECK(said({6, -2, -2}, 5, false).empty());  // beside it
 }
