@@ -94,17 +94,16 @@ TEST_CASE("corners, and wedges between walls that touch, are no passages") {
 }
 
 TEST_CASE("shapes that touch flush, but for rounding, leave no passage, and a hair's breadth is one") {
-  const auto beside = [](const std::string& left, const std::string& lower, const std::string& right) {
+  const auto beside = [](const std::string& right) {
     return passages(R"("size": ["60 um", "20 um"], "nodes": [120, 40], )" + closed + R"("obstacles": [
-      {"box": {"lower": [")" +
-                    left + R"(", ")" + lower + R"("], "upper": ["34.1 um", "8.2 um"]}},
+      {"box": {"lower": ["30 um", "0 um"], "upper": ["34.1 um", "8.2 um"]}},
       {"box": {"lower": [")" +
                     right + R"(", "0 um"], "upper": ["38.2 um", "8.2 um"]}}])")
         .narrowest;
   };
-  CHECK(beside("30 um", "0 um", "34.1 um") == Approx(4 * 23.6).epsilon(0.01));
-  CHECK(beside("30 um", "0 um", "34.10001 um") == Approx(4 * 23.6).epsilon(0.01));
-  CHECK(beside("30 um", "0 um", "34.11 um") == Approx(0.02).epsilon(0.01));
+  CHECK(beside("34.1 um") == Approx(23.6).epsilon(0.01));
+  CHECK(beside("34.10001 um") == Approx(23.6).epsilon(0.01));
+  CHECK_THROWS_WITH(beside("34.11 um"), Contains("a passage is 0.02 lattice spacings"));
 }
 
 TEST_CASE(
