@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Mapping, NamedTuple
 
 from .errors import Error, Fault
 from .running import ProgressLike
-from .scenes import SceneLike, as_json, pointer_of, quantity_text, text_of, whole
-from .sweeping import Job, number_and_unit, run_all
+from .scenes import SceneLike, as_json, pointer_of, quantity_text, text_of
+from .sweeping import Job, at_once, number_and_unit, run_all
 
 if TYPE_CHECKING:
     import pandas
@@ -102,7 +102,6 @@ def break_up(scene: SceneLike, *, most: Any = "400 1/s", ramp: Any = "1 s", stra
     def step(rates: list[float]) -> None:
         sheared("step", [{"shear_rate": f"{rate:.6g} 1/s", "strain": strain, "start": "developed"} for rate in rates])
 
-    whole("workers", workers or 1, 1)
     first, ramp_stress, reach = fastest, math.nan, fastest
     if ramp is not None:
         sheared("ramp", [{"shear_rate": {"from": f"0 {unit}", "to": quantity_text(most)}, "duration": quantity_text(ramp)}])
@@ -111,7 +110,7 @@ def break_up(scene: SceneLike, *, most: Any = "400 1/s", ramp: Any = "1 s", stra
                               rows[0]["directory"]))
         first, ramp_stress = rows[0]["shear_rate_per_s"], rows[0]["stress_Pa"]
         reach = 4 * first
-    parts = (workers or os.cpu_count() or 1) + 1
+    parts = at_once(workers) + 1
     low, high, guess = 0.0, math.inf, first
     while high - low > 2 * tolerance * high or not math.isfinite(high):
         if min(guess, high) < 1e-3 * first or (guess > reach and math.isinf(high)):

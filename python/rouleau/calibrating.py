@@ -18,9 +18,9 @@ from .means import mean_of_seeds
 from .pages import Line, chart, link, number, table as html_table, with_bar, write_page, write_whole
 from .reading import Run
 from .running import ProgressLike
-from .scenes import SceneLike, as_json, hashes_of_files, text_of, whole
+from .scenes import SceneLike, as_json, floats, hashes_of_files, named, text_of, whole
 from .surrogate import Process
-from .sweeping import Job, number_and_unit, places_of_seeds, run_all, short_names, unit_word
+from .sweeping import Job, at_once, number_and_unit, places_of_seeds, run_all, short_names, unit_word
 
 if TYPE_CHECKING:
     import numpy
@@ -119,14 +119,14 @@ def calibrate(scene: Union[SceneLike, Simulator], parameters: Mapping[str, tuple
     The answer has 95 % intervals, which hold the observations' errors, those of the runs, and what is between the runs.
     Throws Error for bad input, where the observation cannot decide a parameter ("flat"), and where no value gives it.
     """
-    folder = pathlib.Path(out)
+    folder, count = pathlib.Path(out), at_once(workers)
     axes = _axes(parameters)
     goals = _goals(observed)
     limit = whole("most_points", most_points, FIRST_POINTS[len(axes)]) if most_points is not None else MOST_POINTS[len(axes)]
     if callable(scene):
         if seeds is not None or changes:
             raise Error(Fault("a function takes neither seeds nor changes", "let it do both itself"))
-        evaluate = _of_function(scene, axes, goals, workers)
+        evaluate = _of_function(scene, axes, goals, count)
         known: list[tuple[float, ...]] = []
     else:
         evaluate = _of_scene(scene, axes, goals, seeds, folder, workers, fresh, progress, changes)
@@ -143,13 +143,12 @@ def calibrate(scene: Union[SceneLike, Simulator], parameters: Mapping[str, tuple
             write_whole(folder / "points.json", json.dumps({**_memories(folder), memory: [list(point.values) for point in points]}))
 
     compute([[axis.place(value) for axis, value in zip(axes, values)] for values in known])
-    at_once = workers or os.cpu_count() or 1
     compute(_first(len(axes)))
     _check(points, goals)
     most = max(limit, len(known))
     while len(points) < most:
         before = len(points)
-        room = min(at_once, most - before)
+        room = min(count, most - before)
         bracket = _bracket(points, goals) if len(axes) == 1 and len(goals) == 1 else None
         if bracket is not None:
             compute([[bracket[0] + (bracket[1] - bracket[0]) * k / (room + 1)] for k in range(1, room + 1)])
@@ -165,6 +164,7 @@ def calibrate(scene: Union[SceneLike, Simulator], parameters: Mapping[str, tuple
 
 
 def _axes(parameters: Mapping[str, tuple[Any, Any]]) -> list[_Axis]:
+    parameters = named("parameters", parameters)
     if not 1 <= len(parameters) <= 3:
         raise Error(Fault(f"there are {len(parameters)} parameters", "give one, two or three"))
     axes = []
@@ -179,8 +179,9 @@ def _axes(parameters: Mapping[str, tuple[Any, Any]]) -> list[_Axis]:
 
 def _goals(observed: Mapping[str, Sequence[Any]]) -> list[_Goal]:
     goals = []
-    for name, entry in observed.items():
-        good = isinstance(entry, (tuple, list)) and len(entry) in (2, 3) and all(isinstance(part, (int, float)) for part in entry[:2])
+    for name, entry in named("observed", observed).items():
+        good = isinstance(entry, (tuple, list)) and len(entry) in (2, 3) and all(isinstance(part, (int, float)) for part in entry[:2]) \
+            and all(map(callable, entry[2:]))
         if not good or not (entry[1] > 0 and math.isfinite(entry[0]) and math.isfinite(entry[1])):
             raise Error(Fault(f'"{name}" was observed as {entry!r}', "give (value, standard error) with an error above 0, in SI; and a "
                               "function of the run as third entry where the name is in no summary.json"))
@@ -221,21 +222,24 @@ def _value_and_error(found: Any) -> tuple[float, float]:
         value, error = found
     else:
         value, error = found, None
-    if isinstance(value, str) or isinstance(value, (dict, list)):
-        raise Error(Fault(f"{str(value)[:100]!r} is no number", "name one, or give a function that returns one"))
-    return math.nan if value is None else float(value), math.nan if error is None else float(error)
+    if isinstance(value, str):
+        value = [value]  # a number in words is none
+    made = floats("this is no number with its error", [value, error], "name one, or give a function that returns one").tolist()
+    return made[0], made[1]
 
 
 Evaluate = Callable[[Sequence[tuple[float, ...]]], list[tuple[tuple[tuple[float, float], ...], tuple[str, ...]]]]
 
 
-def _of_function(function: Simulator, axes: Sequence[_Axis], goals: Sequence[_Goal], workers: int | None) -> Evaluate:
+def _of_function(function: Simulator, axes: Sequence[_Axis], goals: Sequence[_Goal], workers: int) -> Evaluate:
     def one(values: tuple[float, ...]) -> tuple[tuple[tuple[float, float], ...], tuple[str, ...]]:
-        answer = function(dict(zip((axis.key for axis in axes), values)))
+        answer = named("the function gave", function(dict(zip((axis.key for axis in axes), values))))
+        if missing := [goal.name for goal in goals if goal.name not in answer]:
+            raise Error(Fault(f'the function gave no "{missing[0]}"', "it gave: " + ", ".join(map(str, answer))))
         return tuple(_value_and_error(answer[goal.name]) for goal in goals), ()
 
     def evaluate(points: Sequence[tuple[float, ...]]) -> list[tuple[tuple[tuple[float, float], ...], tuple[str, ...]]]:
-        with concurrent.futures.ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
+        with concurrent.futures.ThreadPoolExecutor(workers) as pool:
             return list(pool.map(one, points))
     return evaluate
 

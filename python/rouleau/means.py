@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple, Sequence
 
+from .errors import Error, Fault
+from .scenes import floats
+
 
 class SeedMean(NamedTuple):
     """The mean of runs that differ by their seed."""
@@ -18,9 +21,11 @@ class SeedMean(NamedTuple):
 
 def mean_of_seeds(values: Sequence[float], errors: Sequence[float]) -> SeedMean:
     """The mean over runs of different seeds. The spread of the runs holds what changes from seed to seed and, as its least
-    part, what each run does not know of its own mean. By chance it may come out below that, and then the latter stands."""
+    part, what each run does not know of its own mean. By chance it may come out below that, and then the latter stands.
+    All is nan where there is no value, or one is nan. Throws Error where values and errors are not as many."""
+    values, errors = _as_many("values", values, "errors", errors)
     count = len(values)
-    if count == 0:
+    if count == 0 or not all(map(math.isfinite, values)):
         return SeedMean(*[math.nan] * 5)
     mean = math.fsum(values) / count
     between = math.sqrt(math.fsum((value - mean) ** 2 for value in values) / (count - 1) / count) if count > 1 else math.nan
@@ -28,6 +33,13 @@ def mean_of_seeds(values: Sequence[float], errors: Sequence[float]) -> SeedMean:
     known = [error for error in (between, within) if math.isfinite(error)]
     error = max(known) if known else math.nan
     return SeedMean(mean, error, between, within, student_95(count - 1) * error)
+
+
+def _as_many(what: str, values: Sequence[float], beside: str, others: Sequence[float]) -> tuple[list[float], list[float]]:
+    made = [floats(name, given, "give a list of numbers", lists=True).tolist() for name, given in ((what, values), (beside, others))]
+    if len(made[0]) != len(made[1]):
+        raise Error(Fault(f"there are {len(made[0])} {what} and {len(made[1])} {beside}", "give as many of both"))
+    return made[0], made[1]
 
 
 def student_95(freedom: int) -> float:
@@ -100,7 +112,8 @@ def statistics(values: Sequence[float], times: Sequence[float] | None = None) ->
     5. A straight line through the values rises by more than three of its standard errors, which are those of step 3 for what
        the line leaves: not steady.
 
-    `bar95` is Student's t for the smaller of the numbers of batches and of independent parts.
+    `bar95` is Student's t for the smaller of the numbers of batches and of independent parts. Throws Error for what is no
+    list of numbers, and where values and times are not as many.
     """
     y, first, distance = _equidistant(values, times)
     count = len(y)
@@ -135,14 +148,15 @@ def statistics(values: Sequence[float], times: Sequence[float] | None = None) ->
 
 def _equidistant(values: Sequence[float], times: Sequence[float] | None) -> tuple[list[float], float, float]:
     """Values at equal distances, as many as there are finite ones; the first place and the distance."""
+    values, places = _as_many("values", values, "times", values if times is None else times)
     if times is None:
-        return [float(value) for value in values if math.isfinite(value)], 0.0, 1.0
+        return [value for value in values if math.isfinite(value)], 0.0, 1.0
     x: list[float] = []
     y: list[float] = []
-    for place, value in zip(times, values, strict=True):
+    for place, value in zip(places, values):
         if math.isfinite(value) and (not x or place > x[-1]):
-            x.append(float(place))
-            y.append(float(value))
+            x.append(place)
+            y.append(value)
     if len(y) < 2:
         return y, x[0] if x else math.nan, math.nan
     distance = (x[-1] - x[0]) / (len(x) - 1)

@@ -12,10 +12,14 @@ import operator
 import os
 import pathlib
 import tempfile
-from typing import Any, Iterable, Iterator, Mapping, Union
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, Union
 
 from .errors import Error, Fault
 from .program import call_json
+
+if TYPE_CHECKING:
+    import numpy
+    from numpy.typing import NDArray
 
 #: A scene: the path of its file, or its content.
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
@@ -82,6 +86,26 @@ def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
         bounds = f"from {least} to {most}" if most is not None else f"{least} or more"
         raise Error(Fault(f"{name} is {value!r}", f"give a whole number, {bounds}"))
     return number
+
+
+def floats(what: str, values: Any, remedy: str, lists: bool = False) -> NDArray[numpy.float64]:
+    """Numbers as an array, in one dimension where it `lists` them; nan for None. Throws Error for what is no number, and
+    for lists of unequal length."""
+    import numpy
+    try:
+        found = numpy.asarray(values)
+        if lists and found.ndim != 1:
+            raise ValueError
+        return found.astype(numpy.float64, casting="unsafe" if found.dtype == object else "same_kind", copy=False)
+    except (TypeError, ValueError, OverflowError):
+        raise Error(Fault(f"{what}: {' '.join(str(values).split())[:200]}", remedy)) from None
+
+
+def named(what: str, values: Any) -> dict[Any, Any]:
+    """Values by name: a mapping, or a Series of pandas. Throws Error for anything else."""
+    if not hasattr(values, "items"):
+        raise Error(Fault(f"{what}: {str(values)[:200]}", "give values by name: {name: value}"))
+    return dict(values.items())
 
 
 def settings(changes: Mapping[str, Any], scene: SceneLike) -> list[str]:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+import numbers
 import os
 import pathlib
 import re
 import struct
 import zlib
-from typing import TYPE_CHECKING, Any, Iterator, Sequence
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Sequence
 from xml.etree import ElementTree
 
 from .errors import Error, Fault
+from .scenes import floats
 
 if TYPE_CHECKING:
     import numpy
@@ -27,10 +29,6 @@ def outline(points_m: ArrayLike, lower: Any = None, upper: Any = None) -> Shape:
     the first. In three dimensions it reaches along z from `lower` to `upper` (m, or text with a unit), without them through
     all of the domain."""
     points = _corners(points_m)
-    if len(points) > 1 and (points[0] == points[-1]).all():
-        points = points[:-1]
-    if len(points) < 3:
-        raise Error(Fault(f"a polygon of {len(points)} different corners encloses nothing", "give three corners or more"))
     heights = {"lower": lower, "upper": upper}
     return {"outline": {"points": points.tolist(), **{key: value for key, value in heights.items() if value is not None}}}
 
@@ -42,7 +40,7 @@ def mask(values: ArrayLike, path: str | os.PathLike[str], pixel: Any, at: Any = 
     in the domain, [0, 0] without it. In three dimensions values [nz, ny, nx] make a picture for each layer, `spacing` apart,
     with numbers in their names."""
     import numpy
-    grey = numpy.asarray(values, dtype=numpy.float64)
+    grey = floats("this is no mask", values, "give values [ny, nx] or [nz, ny, nx] from 0 to 1")
     if grey.ndim not in (2, 3) or 0 in grey.shape or not ((grey >= 0) & (grey <= 1)).all():
         raise Error(Fault(f"an array of shape {list(grey.shape)} is no mask, or has values that are not from 0 to 1",
                           "give values [ny, nx] or [nz, ny, nx] from 0 to 1"))
@@ -60,8 +58,9 @@ def mask(values: ArrayLike, path: str | os.PathLike[str], pixel: Any, at: Any = 
 def vessel(polygons_m: Sequence[ArrayLike]) -> Shape:
     """The keys of a scene's `domain` for fluid inside of polygons [n, 2] in m: a polygon within another is an obstacle. Throws
     Error where polygons lie in each other three deep."""
-    corners = [_corners(polygon) for polygon in polygons_m]
-    depth = [sum(_holds(other, polygon[0]) for other in corners if other is not polygon) for polygon in corners]
+    import numpy
+    corners = [_corners(polygon) for polygon in polygons_m] if isinstance(polygons_m, Iterable) else []
+    depth = [sum(_holds(other, polygon[0]) for other in corners if not numpy.array_equal(other, polygon)) for polygon in corners]
     if not corners or max(depth) > 1:
         raise Error(Fault("no polygons" if not corners else f"polygon {depth.index(max(depth))} lies in an obstacle",
                           "give the vessel's outline, and in it obstacles"))
@@ -75,6 +74,9 @@ def polygons(path: str | os.PathLike[str], unit_m: float = 1e-6, deviation: floa
     Curves become straight pieces, at most `deviation` units away. The y axis points up: that of an SVG is turned, and its
     lower left corner becomes the origin. Its lengths in mm, cm, in, pt and pc become px, its units: 96 an inch. Lines and arcs of
     a DXF that meet at their ends are one line. DXF needs ezdxf."""
+    for name, value in (("unit_m", unit_m), ("deviation", deviation)):
+        if not isinstance(value, numbers.Real) or not 0 < value < math.inf:
+            raise Error(Fault(f"{name} is {value!r}", "give a number above 0"))
     path = pathlib.Path(path)
     if not path.is_file():
         raise Error(Fault("this is no plain file", "give a .dxf or .svg file", str(path)), exit_code=4)
@@ -90,10 +92,14 @@ def polygons(path: str | os.PathLike[str], unit_m: float = 1e-6, deviation: floa
 
 def _corners(points: ArrayLike) -> Floats:
     import numpy
-    found = numpy.asarray(points, dtype=numpy.float64)
+    found = floats("this is no polygon", points, "give x and y of each corner in m, [n, 2]")
     if found.ndim != 2 or found.shape[1] != 2 or not numpy.isfinite(found).all():
         raise Error(Fault(f"an array of shape {list(found.shape)} is no polygon, or has values that are no numbers",
                           "give x and y of each corner, [n, 2]"))
+    if len(found) > 1 and (found[0] == found[-1]).all():
+        found = found[:-1]
+    if len(found) < 3:
+        raise Error(Fault(f"a polygon of {len(found)} different corners encloses nothing", "give three corners or more"))
     return found
 
 

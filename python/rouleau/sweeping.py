@@ -18,7 +18,7 @@ from .errors import Error, Fault
 from .means import SeedMean, Statistics, mean_of_seeds
 from .reading import Mean, Run
 from .running import FAILED, Progress, ProgressLike, shown, simulate
-from .scenes import SceneLike, as_json, hashes_of_files, options_of, pointer_of, text_of, whole
+from .scenes import SceneLike, as_json, hashes_of_files, named, options_of, pointer_of, text_of, whole
 
 if TYPE_CHECKING:
     import pandas
@@ -53,6 +53,10 @@ def sweep(scene: SceneLike, over: Mapping[str, Sequence[Any]], *, seeds: Sequenc
     Interrupting saves checkpoints and throws KeyboardInterrupt; the same call goes on. Throws Error for bad input.
     """
     import pandas
+    over = named("over", over)
+    for key, entries in over.items():
+        if isinstance(entries, (str, Mapping)) or not hasattr(entries, "__len__") or len(entries) == 0:
+            raise Error(Fault(f"{key} has the values {entries!r}", "give a list of one value or more"))
     keys = list(over)
     names = short_names(keys)
     places = places_of_seeds(scene, changes, keys) if seeds is not None else []
@@ -88,10 +92,15 @@ class Job(NamedTuple):
     changes: dict[str, Any]  #: of the scene
 
 
+def at_once(workers: int | None) -> int:
+    """How many runs go on at a time."""
+    return whole("workers", workers or os.cpu_count() or 1, 1)
+
+
 def run_all(scene: SceneLike, jobs: Sequence[Job], out: pathlib.Path, workers: int | None, error_bars: bool, fresh: bool,
             progress: ProgressLike) -> list[Run]:
     """The runs of a scene, so many at a time; those that are there are not made again. Throws Error for bad input."""
-    listen = shown(progress)
+    count, listen = at_once(workers), shown(progress)
     speaking, stop = threading.Lock(), threading.Event()
 
     def tell(now: Progress) -> None:
@@ -106,7 +115,7 @@ def run_all(scene: SceneLike, jobs: Sequence[Job], out: pathlib.Path, workers: i
         directory = out / _directory_name(job.values, content, job.changes, [error_bars, *hashes_of_files(scene, job.changes)])
         return _run_of(scene, directory, job.changes, error_bars, fresh, tell, stop)
 
-    with concurrent.futures.ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
+    with concurrent.futures.ThreadPoolExecutor(count) as pool:
         futures = [pool.submit(one, job) for job in jobs]
         try:
             return [future.result() for future in futures]
@@ -284,7 +293,7 @@ def _has_its_plugins(there: Run) -> bool:
 def _measured(made: Run, measure: Callable[[Run], Mapping[str, Any]] | None) -> Mapping[str, Any]:
     columns: dict[str, Any] = {}
     if measure is not None:
-        for name, value in measure(made).items():
+        for name, value in named("measure gave", measure(made)).items():
             if isinstance(value, (Mean, SeedMean, Statistics)):
                 columns.update({name: value.value, f"{name}_error": value.error})
             else:

@@ -116,6 +116,13 @@ class Refused(Case):
             self.assert_refused(words, rouleau.calibrate, dict, parameters, {"b": (1, 1)})
         for observed, words in (({}, "nothing was observed"), ({"b": (1, 0)}, "an error above 0"), ({"b": 3}, "was observed as 3")):
             self.assert_refused(words, rouleau.calibrate, dict, {"a": (1, 2)}, observed)
+        self.assert_refused("give values by name", rouleau.calibrate, dict, ["a"], {"b": (1, 1)})
+        self.assert_refused("workers is -1", rouleau.calibrate, dict, {"a": (1, 2)}, {"a": (1, 1)}, workers=-1)
+
+    def test_is_what_a_function_gives_that_was_not_asked_for(self):
+        for answer, words in ((None, "the function gave: None"), ({"c": 1}, 'gave no "b"'), ({"b": "high"}, "no number"), ({"b": (1, "low")}, "no number"),
+                              ({"b": [1, 2, 3]}, "no number")):
+            self.assert_refused(words, rouleau.calibrate, lambda values: answer, {"a": (1, 2)}, {"b": (1, 1)})
 
     def test_are_ends_of_the_range_named_where_the_value_is_likely_there(self):
         simulator = Noisy(numpy.random.default_rng(SEED), 0.001, y=lambda a: a)

@@ -135,6 +135,10 @@ mkdir run && echo '{"status": "completed", "warnings": []}' > run/summary.json &
                 self.assert_refused("is no scene", call, scene)
         for words in ({"threads": "2"}, {"threads": 0}, {"max_steps": 2.5}, {"max_steps": -1}):
             self.assert_refused(f"{list(words)[0]} is", rouleau.run, small_scene(), "run", **words)
+        for values in ([], "20 1/s", 20):
+            self.assert_refused("title has the values", rouleau.sweep, small_scene(), {"title": values})
+        self.assert_refused("give values by name", rouleau.sweep, small_scene(), ["title"])
+        self.assert_refused("workers is -1", rouleau.sweep, small_scene(), {"title": ["a"]}, workers=-1)
 
     def test_of_a_program_that_does_not_start_or_answer_are_told(self):
         pathlib.Path("rouleau").write_text("#!/nowhere\n")

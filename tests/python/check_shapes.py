@@ -30,6 +30,8 @@ class An_outline(Case):
         self.assert_refused("2 different corners", rouleau.outline, [[0, 0], [1, 0], [0, 0]])
         self.assert_refused("shape [2, 3]", rouleau.outline, [[0, 0, 0], [1, 0, 0]])
         self.assert_refused("no numbers", rouleau.outline, [[0, 0], [1, math.nan], [0, 1]])
+        for points in ("abc", [[0, 0], [1], [2, 2]], [["0 um", "0 um"], ["4 um", "0 um"], ["4 um", "4 um"]], SQUARE * 1j, [[0, 10**400]] * 3):
+            self.assert_refused("no polygon", rouleau.outline, points)
 
 
 class A_mask(Case):
@@ -51,6 +53,8 @@ class A_mask(Case):
     def test_is_refused_where_it_is_none(self):
         self.assert_refused("from 0 to 1", rouleau.mask, [[0, 255]], self.path / "a.png", 1e-6)
         self.assert_refused("shape [2]", rouleau.mask, [0, 1], self.path / "a.png", 1e-6)
+        for values in ([["a"]], [[0, 1], [1]]):
+            self.assert_refused("no mask", rouleau.mask, values, self.path / "a.png", 1e-6)
         self.assert_refused("spacing of layers", rouleau.mask, numpy.zeros((2, 2, 2)), self.path / "a.png", 1e-6)
         self.assertEqual(list(self.path.iterdir()), [])
 
@@ -63,6 +67,9 @@ class A_vessel(Case):
         self.assertEqual(rouleau.vessel([SQUARE]), {"walls": {"within": rouleau.outline(SQUARE)}})
         self.assert_refused("lies in an obstacle", rouleau.vessel, [SQUARE, hole, SQUARE / 16 + 1.2e-6])
         self.assert_refused("no polygons", rouleau.vessel, [])
+        self.assert_refused("no polygons", rouleau.vessel, None)
+        self.assert_refused("0 different corners", rouleau.vessel, [numpy.zeros((0, 2))])
+        self.assertEqual(rouleau.vessel([SQUARE, SQUARE.copy()]), {"walls": {"within": {"union": [rouleau.outline(SQUARE)] * 2}}})
 
 
 class A_drawing(Case):
@@ -146,6 +153,8 @@ class A_drawing(Case):
             (self.path / name).write_text("no drawing")
         self.assert_refused('".png"', rouleau.polygons, self.path / "a.png")
         self.assert_refused("no plain file", rouleau.polygons, self.path / "none.svg")
+        for words in ({"unit_m": "1 um"}, {"unit_m": math.nan}, {"deviation": 0}):
+            self.assert_refused(f"{list(words)[0]} is", rouleau.polygons, self.path / "a.svg", **words)
         refused = "no DXF file" if importlib.util.find_spec("ezdxf") else "which is not installed"
         self.assert_refused(refused, rouleau.polygons, self.path / "a.dxf")
 

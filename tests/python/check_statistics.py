@@ -98,6 +98,19 @@ class A_series_without_a_mean(Case):
         self.assertFalse(rouleau.statistics([math.nan] * 30, range(30)).steady)
 
 
+class Lists(Case):
+    def test_that_are_none_or_unlike_are_refused(self):
+        self.assert_refused("3 values and 2 times", rouleau.statistics, [1, 2, 3], [1, 2])
+        self.assert_refused("2 values and 1 errors", rouleau.mean_of_seeds, [1, 2], [0.1])
+        for values in (["a"] * 30, [[1, 2]] * 30, [[1], [1, 2]], [1j] * 30, 3, None):
+            self.assert_refused("give a list of numbers", rouleau.statistics, values)
+            self.assert_refused("give a list of numbers", rouleau.mean_of_seeds, values, values)
+
+    def test_of_seeds_have_no_mean_and_no_bar_where_one_is_unknown(self):
+        self.assertTrue(all(map(math.isnan, rouleau.mean_of_seeds([1, math.nan], [0.1, 0.1]))))
+        self.assertAlmostEqual(rouleau.mean_of_seeds([1, 3], [0.1, None]).error, 1.0)
+
+
 class A_mean(Case):
     def test_of_equal_values_has_no_error(self):
         self.assertEqual(rouleau.statistics([2.0] * 30)[:5], (2.0, 0.0, 0.0, True, "steady"))
