@@ -91,8 +91,8 @@ void add_oscillation(const LimitedStage& of, LimitList& limits) {
                of.lower + ": the fluid is simulated heavier than it is and lags behind what drives it", of.density);
 }
 
-/// A triangle of a membrane that treads is strained back and forth at most as fast as the flow shears. What forces pull,
-/// and what comes back once they end, is to be seen within its stage.
+/// A triangle of a membrane that treads is strained back and forth at most as fast as the flow shears. What forces
+/// pull, and what comes back once they end, is to be seen within its stage.
 void add_viscous_lag(const LimitedStage& of, LimitList& limits) {
   const bool pulled = std::any_of(of.scene.stages.begin(), of.scene.stages.end(),
                                   [](const scene::Stage& stage) { return !stage.forces.empty(); });

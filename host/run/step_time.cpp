@@ -5,6 +5,7 @@
 #include "base/stopwatch.hpp"
 #include "engine.hpp"
 #include "plan/estimate.hpp"
+#include "scene/dimension_words.hpp"
 #include "stepper.hpp"
 
 namespace rouleau::run {
@@ -53,7 +54,8 @@ StepTime measure(const plan::Plan& plan, int threads) {
 }  // namespace
 
 StepTime measure_steps(const plan::Plan& plan, int threads) {
-  return plan.scene->domain.dimension() == 2 ? measure<2>(plan, threads) : measure<3>(plan, threads);
+  return scene::in_dimension(plan.scene->domain.dimension(),
+                             [&]<int D>(std::integral_constant<int, D>) { return measure<D>(plan, threads); });
 }
 
 }  // namespace rouleau::run

@@ -1,5 +1,8 @@
 // What a stage waits for must be able to come.
+#include <string>
+
 #include "base/text.hpp"
+#include "dimension_words.hpp"
 #include "driving_flow.hpp"
 #include "scene_reader.hpp"
 
@@ -18,8 +21,9 @@ std::string missing_for(const std::string& column, const Stage& stage, const Sce
                  !scene.cells.empty() || !scene.packings.empty() || (domain.openings && domain.openings->front().cells);
   if (begins("inlet_") || begins("outlet_")) {
     if (!domain.is_open()) return "an inlet and an outlet";
-    if (column.ends_with(domain.dimension() == 2 ? "_m3_per_s" : "_m2_per_s"))
-      return std::string(domain.dimension() == 2 ? "three" : "two") + " dimensions";
+    const int other = 5 - domain.dimension();  // flows are in m2/s or m3/s
+    if (column.ends_with("_m" + std::to_string(other) + "_per_s"))
+      return std::string(words_of(other).number) + " dimensions";
     return "";
   }
   if (!walls) return begins("pressure_gradient") && kept ? "" : "walls";

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <map>
 
+#include "core/geometry/border.hpp"
 #include "core/geometry/faceted.hpp"
 #include "core/geometry/formulas.hpp"
-#include "core/geometry/border.hpp"
 #include "random.hpp"
 
 using namespace rouleau::core;
