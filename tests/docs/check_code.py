@@ -156,7 +156,7 @@ class Code(unittest.TestCase):
         elif key == "cells":
             scene["cells"] = [part]
         elif key == "stages":
-            scene["stages"], scene["output"] = [part], {}
+            scene["stages"], scene["output"] = [part], {"cells": {"seconds": "0.1 s"}}
         else:
             scene[key] = [part]
         self.plan(scene)
