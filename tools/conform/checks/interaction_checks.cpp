@@ -55,16 +55,16 @@ Values at_distances(const Subject& subject, const Trial& trial, const std::vecto
   return inputs;
 }
 
-/// The median size of an output over the outer half of the range: large where a potential is, not at contact, where
-/// many diverge.
+/// The largest size of an output over the outer half of the range: not at contact, where many diverge. At the cutoff
+/// terms as large are subtracted from each other.
 double size_of(const Subject& subject, const Trial& trial, const std::string& name, double cutoff, Random& random) {
   std::vector<double> distances;
   distances.reserve(101);
   for (int i = 0; i < 101; ++i) distances.push_back(cutoff * (0.5 + 0.005 * i));
-  auto values = compute(subject, trial.instance, at_distances(subject, trial, distances, random)).at(name);
-  for (double& value : values) value = std::abs(value);
-  std::nth_element(values.begin(), values.begin() + 50, values.end());
-  return values[50];
+  const auto values = compute(subject, trial.instance, at_distances(subject, trial, distances, random)).at(name);
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
 }
 
 Finding cutoff(const Subject& subject) {
