@@ -126,7 +126,7 @@ class PlannedRanks {
 
 std::string measured_in_words(const run::StepTime& time) {
   return "Measured here, " + std::to_string(time.steps) + " steps by " + std::to_string(time.threads) +
-         (time.threads == 1 ? " thread: " : " threads: ") + plan::time_in_words(time.wall_s) + " in all, " +
+         (time.threads == 1 ? " thread: " : " threads: ") + plan::time_in_words(time.wall_s) + " for the run, " +
          number(1e3 * time.step_s, 3) + " ms a step and " + number(1e3 * time.output_s, 3) + " ms an output\n";
 }
 

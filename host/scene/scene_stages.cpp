@@ -386,7 +386,8 @@ Output read_output(const SceneFields& fields, const std::vector<Stage>& stages, 
   for (const Stage& stage : stages) {
     if (output.cells.never() && (stage.until_parted || !stage.until_mean.empty()))
       fields.attempt([&] {
-        fields.refuse(stage.pointer + "/until", "this is looked at when cells are written\ngive output.cells");
+        fields.refuse(stage.pointer + "/until",
+                      "outputs end such a stage, and no cells are written\ngive output.cells");
       });
   }
   return output;
