@@ -157,6 +157,8 @@ class Code(unittest.TestCase):
             scene["cells"] = [part]
         elif key == "stages":
             scene["stages"], scene["output"] = [part], {"cells": {"seconds": "0.1 s"}}
+            if part.get("until") == "parted":  # of cells that something joins
+                scene["interactions"] = [{"between": ["rbc", "rbc"], "model": "morse", "parameters": {"depth": "5.2e-8 J/m2"}}]
         else:
             scene[key] = [part]
         self.plan(scene)
