@@ -11,9 +11,7 @@
 #include "scene/lattice.hpp"
 #include "scene/scene_reader.hpp"
 #include "shape/extent.hpp"
-#include "shape/passages.hpp"
 #include "shape/random_cells.hpp"
-#include "shape/walls.hpp"
 
 namespace rouleau::plan {
 
@@ -190,11 +188,11 @@ bool is_shared(const scene::Scene& scene, double border) {
 /// Of walls of any shape.
 void add_wall_warnings(const scene::Scene& scene, std::vector<std::string>& warnings) {
   const scene::Domain& domain = scene.domain;
-  for (const std::string& pointer : shape::obstacles_outside(scene))
+  for (const std::string& pointer : domain.obstacles_outside)
     warnings.push_back(pointer + " lies wholly outside of the domain; move it, or leave it out");
-  if (domain.passages && shape::unseen_wall(*domain.passages).thickness > 0) {
+  if (domain.passages && domain.passages->unseen.thickness > 0) {
     constexpr double sure = 1.5;  // links are up to the root of 2 spacings long
-    const auto& [thickness, at] = shape::unseen_wall(*domain.passages);
+    const auto& [thickness, at] = domain.passages->unseen;
     const double spacing = scene::lattice_spacing(scene);
     warnings.push_back(
         "the wall at (" + scene::by_axes(at, 1e6, 5, " um", ", ") + ") is " + number(thickness * spacing * 1e6, 3) +

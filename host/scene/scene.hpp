@@ -36,6 +36,12 @@ struct ModelChoice {
   std::string pointer;        ///< JSON pointer of the object that names the model
 };
 
+/// A wall between two neighbouring nodes of the fluid that holds none itself: the flow goes through it.
+struct UnseenWall {
+  double thickness = 0;  ///< spacings, of the thickest one; 0: there is none
+  Vector at = {};        ///< a place in it, m
+};
+
 /// What the lattice makes of the fluid between walls of any shape.
 struct Passages {
   double narrowest =
@@ -47,6 +53,7 @@ struct Passages {
   std::array<double, 2> open = {};  ///< m2, or m in two dimensions, at the lower end of the flow axis and the upper one
   double least_open = 0;            ///< the same at the place along it where it is least
   double beside_walls = 0;          ///< nodes of the fluid within a spacing of walls of a shape
+  UnseenWall unseen = {};
 };
 
 /// Cells that come in through an opening while the run goes on.
@@ -79,6 +86,7 @@ struct Domain {
   /// All outside of `within`, and all inside of an obstacle, is wall, beside whatever lies across y and z.
   std::optional<WallShape> within = {};
   std::vector<WallShape> obstacles = {};
+  std::vector<std::string> obstacles_outside = {};  ///< pointers of those without a part in it; by shape::build_walls()
   /// What these leave to the fluid, by dimension, with images along periodic axes, in m; null: there are none. And its
   /// area or volume, m2 or m3. All made by shape::build_walls().
   core::RegionPointer<2> region_in_plane = {};

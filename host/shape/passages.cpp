@@ -272,7 +272,7 @@ class Survey {
 };
 
 template <int D>
-SurveyedPassages surveyed(const scene::Scene& scene) {
+scene::Passages surveyed(const scene::Scene& scene) {
   const core::RegionPointer<D> region = scene::fluid_region<D>(scene);
   Survey<D> survey(region, scene::lattice_domain<D>(scene));
   const double spacing = scene::lattice_spacing(scene);
@@ -282,7 +282,7 @@ SurveyedPassages surveyed(const scene::Scene& scene) {
     for (int k = 0; k < D; ++k) place[k] = units::coordinate(node[k], spacing);
     return place;
   };
-  SurveyedPassages found;
+  scene::Passages found;
   found.unseen.thickness = survey.unseen;
   if (survey.unseen > 0) {
     found.unseen.at = scene::Vector::filled(D, 0);
@@ -330,7 +330,7 @@ void survey_walls(scene::Scene& scene, const std::shared_ptr<const scene::Passag
   scene.domain.passages = known;
   if (known) return;
   scene::in_dimension(scene.domain.dimension(), [&]<int D>(std::integral_constant<int, D>) {
-    scene.domain.passages = std::make_shared<const SurveyedPassages>(surveyed<D>(scene));
+    scene.domain.passages = std::make_shared<const scene::Passages>(surveyed<D>(scene));
   });
 }
 

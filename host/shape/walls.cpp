@@ -293,8 +293,16 @@ void build(scene::Domain& domain, const scene::SceneFields& fields, const Faults
   const Builder<D> builder(domain, unit, fields);
   std::vector<RegionPointer<D>> parts;
   if (domain.within) fields.attempt([&] { parts.push_back(builder.of(*domain.within)); });
-  for (const WallShape& obstacle : domain.obstacles)
-    fields.attempt([&] { parts.push_back(core::outside_of<D>(builder.of(obstacle))); });
+  const Vec<D> half = half_of(builder.domain());
+  domain.obstacles_outside.clear();
+  for (const WallShape& obstacle : domain.obstacles) {
+    fields.attempt([&] {
+      const RegionPointer<D> inside = builder.of(obstacle);
+      if (!reaches<D>(*inside, half - Vec<D>::Constant(0.5), half, content_halvings))
+        domain.obstacles_outside.push_back(obstacle.pointer);
+      parts.push_back(core::outside_of<D>(inside));
+    });
+  }
   if (!faults.empty()) return;
   const RegionPointer<D> fluid = core::intersection<D>(std::move(parts));
   const std::string pointer = domain.within ? domain.within->pointer : "/domain/obstacles";
@@ -321,24 +329,6 @@ void build_walls(scene::Scene& scene, Faults& faults) {
     scene::in_dimension(scene.domain.dimension(),
                         [&]<int D>(std::integral_constant<int, D>) { build<D>(scene.domain, fields, faults); });
   });
-}
-
-std::vector<std::string> obstacles_outside(const scene::Scene& scene) {
-  std::vector<std::string> outside;
-  if (scene.domain.obstacles.empty()) return outside;
-  Faults faults;
-  const scene::SceneFields fields(*scene.document, faults);
-  scene::in_dimension(scene.domain.dimension(), [&]<int D>(std::integral_constant<int, D>) {
-    const Builder<D> builder(scene.domain, common_unit(scene.domain), fields);
-    const Vec<D> half = half_of(builder.domain());
-    for (const WallShape& obstacle : scene.domain.obstacles) {
-      fields.attempt([&] {
-        if (!reaches<D>(*builder.of(obstacle), half - Vec<D>::Constant(0.5), half, content_halvings))
-          outside.push_back(obstacle.pointer);
-      });
-    }
-  });
-  return outside;
 }
 
 }  // namespace rouleau::shape

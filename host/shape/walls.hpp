@@ -15,7 +15,4 @@ inline constexpr int content_halvings = 24;
 /// domain. Adds all faults: files, meshes that are not closed, what does not fit its image one period away, no fluid.
 void build_walls(scene::Scene& scene, Faults& faults);
 
-/// Pointers of obstacles that lie wholly outside of the domain of a scene that build_walls() found right. Reads files.
-std::vector<std::string> obstacles_outside(const scene::Scene& scene);
-
 }  // namespace rouleau::shape

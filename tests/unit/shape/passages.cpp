@@ -114,7 +114,7 @@ TEST_CASE(
         folder.write("scene.json", R"({"rouleau": 1, "domain": {)" + plane + closed + R"("obstacles": [)" + obstacle +
                                        R"(]}, "fluid": {"density": "1 g/cm3", "viscosity": "1 cP"},
         "stages": [{"name": "rest", "duration": "1 ms"}]})");
-    return shape::unseen_wall(*plan::read_scene(file).domain.passages);
+    return plan::read_scene(file).domain.passages->unseen;
   };
   const auto box = [](double left, double lower, double right, double upper) {
     const auto place = [](double x, double y) {

@@ -126,10 +126,11 @@ TEST_CASE("shapes are joined: what lies in any, in each, or in the first alone")
 
 TEST_CASE("obstacles that lie wholly outside of the domain are found, near it or far away") {
   const auto outside = [](const std::string& center, const std::string& radius) {
-    return shape::obstacles_outside(scene_with(
-        plane + closed + R"("obstacles": [{"sphere": {"center": ["20 um", "0 um"], "radius": "3 um"}}, {"sphere":
+    return scene_with(plane + closed +
+                      R"("obstacles": [{"sphere": {"center": ["20 um", "0 um"], "radius": "3 um"}}, {"sphere":
         {"center": ["20 um", ")" +
-        center + R"("], "radius": ")" + radius + R"("}}])"));
+                      center + R"("], "radius": ")" + radius + R"("}}])")
+        .domain.obstacles_outside;
   };
   CHECK(outside("50 um", "1 um") == std::vector<std::string>{"/domain/obstacles/1"});
   CHECK(outside("25.1 um", "5 um") == std::vector<std::string>{"/domain/obstacles/1"});
