@@ -1,12 +1,12 @@
 #include "measure_errors.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <iostream>
 #include <memory>
 
 #include "base/error.hpp"
 #include "base/input_file.hpp"
+#include "base/stopwatch.hpp"
 #include "files/file.hpp"
 #include "files/run_directory.hpp"
 #include "files/verify.hpp"
@@ -36,10 +36,6 @@ struct Ended {
   double wall_s = 0;
 };
 
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
 /// A companion's scene; what it says of files is said from where the run's scene was.
 scene::Scene read(const Companion& companion, const std::string& file) {
   Faults faults;
@@ -64,7 +60,7 @@ struct Prepared {
   double wall_s = 0;
 
   void read_and_plan(const Companion& companion, const std::string& scene_file) {
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     plan.reset();
     refused.clear();
     try {
@@ -74,7 +70,7 @@ struct Prepared {
       if (error.cause() == Cause::input_output) throw;
       refused = error.problem();
     }
-    wall_s += seconds_since(begin);
+    wall_s += watch.seconds();
   }
 };
 
@@ -100,7 +96,7 @@ std::vector<std::unique_ptr<Prepared>> prepare(Companions& companions, const std
 /// Runs a companion, or finds that it has been run.
 Ended run_companion(const Companion& companion, const Prepared& prepared, const fs::path& folder,
                     const MeasureOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   Ended ended{"refused", prepared.refused, folder / name_of(companion.role)};
   try {
     if (prepared.scene && finished_run(ended.directory, *prepared.scene) != Finished::no &&
@@ -122,7 +118,7 @@ Ended run_companion(const Companion& companion, const Prepared& prepared, const 
     ended.end = "refused";
     ended.message = error.problem();
   }
-  ended.wall_s = prepared.wall_s + seconds_since(begin);
+  ended.wall_s = prepared.wall_s + watch.seconds();
   return ended;
 }
 

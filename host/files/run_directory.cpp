@@ -254,9 +254,7 @@ void Log::go_on(double elapsed) {
   before_ = elapsed;
 }
 
-double Log::elapsed() const {
-  return before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-}
+double Log::elapsed() const { return before_ + watch_.seconds(); }
 
 void Log::write(const std::string& event, const nlohmann::json& details) {
   nlohmann::ordered_json line{{"wall_s", std::round(elapsed() * 1e6) * 1e-6}, {"event", event}};

@@ -1,13 +1,13 @@
 // A run's directory: the only place, with the checkpoint, where the simulation writes files.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/stopwatch.hpp"
 #include "file.hpp"
 #include "frame_segments.hpp"
 #include "json/json.hpp"
@@ -33,7 +33,7 @@ class Log {
 
  private:
   AppendFile file_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Stopwatch watch_;
   double before_ = 0;
 };
 

@@ -41,9 +41,7 @@ void ask_for_interruption(int signal) {
 
 TimeLimit::TimeLimit(const std::string& text) : seconds_(text.empty() ? 0 : seconds_in("--max-time", text)) {}
 
-double TimeLimit::left() const {
-  return seconds_ - std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-}
+double TimeLimit::left() const { return seconds_ - watch_.seconds(); }
 
 const std::atomic<bool>& listen_for_interruption(const TimeLimit& limit) {
   for (const CauseOfEnd& cause : causes) {

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <string>
+
+#include "base/stopwatch.hpp"
 
 namespace rouleau::command {
 
@@ -19,7 +20,7 @@ class TimeLimit {
 
  private:
   double seconds_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  Stopwatch watch_;
 };
 
 /// From now on Ctrl-C, SIGTERM, a closed terminal, what batch systems send before they kill (SIGUSR1, SIGXCPU), and the
