@@ -126,7 +126,7 @@ class PlannedRanks {
 
 std::string measured_in_words(const run::StepTime& time) {
   return "Measured here, " + std::to_string(time.steps) + " steps by " + std::to_string(time.threads) +
-         (time.threads == 1 ? " thread: " : " threads: ") + plan::time_in_words(time.wall_s) + " for the run, " +
+         (time.threads == 1 ? " thread: " : " threads: ") + time_in_words(time.wall_s) + " for the run, " +
          number(1e3 * time.step_s, 3) + " ms a step and " + number(1e3 * time.output_s, 3) + " ms an output\n";
 }
 
@@ -155,7 +155,7 @@ int plan_command(const std::vector<std::string>& arguments) {
     const int useful = useful_threads(planned.read.scene, *threads);
     require_startable(planned, nullptr, 1);
     require_threads("--measure", useful);
-    measured = run::measure_steps(planned.plan, useful);
+    measured = run::measure_steps(planned.plan, planned.report.estimate, useful);
   }
   std::optional<PlannedRanks> ranks;
   if (rank_options.ranks) ranks.emplace(rank_options, planned.plan);

@@ -76,8 +76,6 @@ struct PlanReport {
 
 PlanReport make_report(const Plan& plan);
 
-/// "48.0 s", "12.5 min", "3.1 h"
-std::string time_in_words(double seconds);
 /// "in stage shear everything comes late by a strain of 1.31 (of 15)"
 std::string in_words(const LateStart& late);
 /// For people, as `rouleau plan` prints it.

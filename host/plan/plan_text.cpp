@@ -25,6 +25,12 @@ std::string size(double bytes) {
   return formatted(bytes / 1e9, "%.1f") + " GB";
 }
 
+std::string duration(double seconds) {
+  if (seconds < 120) return formatted(seconds, "%.1f") + " s";
+  if (seconds < 7200) return formatted(seconds / 60, "%.1f") + " min";
+  return formatted(seconds / 3600, "%.1f") + " h";
+}
+
 std::string padded(std::string text, std::size_t width) {
   if (text.size() < width) text.resize(width, ' ');
   return text + " ";
@@ -163,16 +169,10 @@ std::string to_text(const Plan& plan, const PlanReport& report) {
   for (const Omission& omission : report.left_out) out << "  " << omission.what << ": " << omission.why << "\n";
 
   out << "\nAt most " << formatted(report.estimate.steps, "%.0f") << " steps, about "
-      << time_in_words(report.estimate.wall_s) << " on one core, " << size(report.estimate.memory_bytes)
+      << duration(report.estimate.wall_s) << " on one core, " << size(report.estimate.memory_bytes)
       << " of memory for fields\n";
   write_output(out, scene, report.estimate.output);
   return out.str();
-}
-
-std::string time_in_words(double seconds) {
-  if (seconds < 120) return formatted(seconds, "%.1f") + " s";
-  if (seconds < 7200) return formatted(seconds / 60, "%.1f") + " min";
-  return formatted(seconds / 3600, "%.1f") + " h";
 }
 
 std::string in_words(const LateStart& late) {

@@ -1,10 +1,7 @@
 #include "step_time.hpp"
 
-#include <algorithm>
-
 #include "base/stopwatch.hpp"
 #include "engine.hpp"
-#include "plan/estimate.hpp"
 #include "scene/dimension_words.hpp"
 #include "stepper.hpp"
 
@@ -21,7 +18,7 @@ class NoHooks final : public StepHooks {
 };
 
 template <int D>
-StepTime measure(const plan::Plan& plan, int threads) {
+StepTime measure(const plan::Plan& plan, const plan::Estimate& estimate, int threads) {
   constexpr double enough_s = 1;
   constexpr long most_steps = 20000;  // of a scene so small that more say nothing
   observe::Observer observer(*plan.scene);
@@ -33,10 +30,10 @@ StepTime measure(const plan::Plan& plan, int threads) {
   const core::StepPasses& passes = engine.solver().passes();
   StepTime time{.threads = threads, .steps = stepper.take(passes, 0, 1, threads)};  // the first one makes lists
   const Stopwatch all;
-  for (long batch = 2; time.steps < 3 || (all.seconds() < enough_s && time.steps < most_steps); batch *= 2) {
+  for (long batch = 2; time.steps < 3 || (all.seconds() < enough_s && time.steps < most_steps);) {
     const Stopwatch watch;
     time.steps = stepper.take(passes, time.steps, time.steps + batch, threads);
-    if (watch.seconds() > enough_s / 10) batch /= 2;
+    if (watch.seconds() < enough_s / 10) batch *= 2;
   }
   time.step_s = all.seconds() / static_cast<double>(time.steps - 1);
   stepper.compute_forces(passes, time.steps);
@@ -46,16 +43,16 @@ StepTime measure(const plan::Plan& plan, int threads) {
     static_cast<void>(observer.observe(engine.solver(), stage, false));
     time.output_s = watch.seconds();
   }
-  const plan::Estimate estimate = plan::estimate(plan);
   time.wall_s = estimate.steps * time.step_s + estimate.output.outputs * time.output_s;
   return time;
 }
 
 }  // namespace
 
-StepTime measure_steps(const plan::Plan& plan, int threads) {
-  return scene::in_dimension(plan.scene->domain.dimension(),
-                             [&]<int D>(std::integral_constant<int, D>) { return measure<D>(plan, threads); });
+StepTime measure_steps(const plan::Plan& plan, const plan::Estimate& estimate, int threads) {
+  return scene::in_dimension(plan.scene->domain.dimension(), [&]<int D>(std::integral_constant<int, D>) {
+    return measure<D>(plan, estimate, threads);
+  });
 }
 
 }  // namespace rouleau::run

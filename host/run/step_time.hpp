@@ -2,7 +2,7 @@
 #pragma once
 
 #include "json/json.hpp"
-#include "plan/plan.hpp"
+#include "plan/estimate.hpp"
 
 namespace rouleau::run {
 
@@ -17,6 +17,7 @@ struct StepTime {
 };
 
 /// Takes the first steps of a plan for about a second, three at least, and writes nothing. Memory for the run is there.
-StepTime measure_steps(const plan::Plan& plan, int threads);
+/// `estimate`: of that plan, for how many steps and outputs there are.
+StepTime measure_steps(const plan::Plan& plan, const plan::Estimate& estimate, int threads);
 
 }  // namespace rouleau::run

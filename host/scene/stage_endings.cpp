@@ -17,8 +17,7 @@ std::string missing_for(const std::string& column, const Stage& stage, const Sce
   const bool walls = domain.walled(1) || domain.has_shapes(), shears = walls_move(stage),
              kept = stage.pressure_gradient != Vector() || stage.mean_velocity || stage.changes(),
              driven = kept || scene.fluid.body_force != Vector(),
-             cells =
-                 !scene.cells.empty() || !scene.packings.empty() || (domain.openings && domain.openings->front().cells);
+             cells = !scene.cells.empty() || !scene.packings.empty() || domain.feed() != nullptr;
   if (begins("inlet_") || begins("outlet_")) {
     if (!domain.is_open()) return "an inlet and an outlet";
     const int other = 5 - domain.dimension();  // flows are in m2/s or m3/s
