@@ -215,6 +215,7 @@ const std::array scene_templates{
 
 std::vector<std::string> template_names() {
   std::vector<std::string> names;
+  names.reserve(scene_templates.size());
   for (const SceneTemplate& entry : scene_templates) names.emplace_back(entry.name);
   return names;
 }

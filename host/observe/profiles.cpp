@@ -43,8 +43,8 @@ std::vector<double> shares(const core::CellNodes& cells, const scene::Scene& sce
   for (const int c : cells.own_cells())
     add_cell(cells.cells[c], bins, [&](int bin, double content) { sums[bin].add(content); });
   core::add_up(ranks, sums);
-  std::vector<double> share;
-  for (int k = 0; k < bins.count; ++k) share.push_back(sums[k].value() / (bins.section(k) * scene.domain.nodes[0]));
+  std::vector<double> share(sums.size());
+  for (int k = 0; k < bins.count; ++k) share[k] = sums[k].value() / (bins.section(k) * scene.domain.nodes[0]);
   return share;
 }
 

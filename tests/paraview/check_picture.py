@@ -1,8 +1,9 @@
 """examples/paraview/cells.py makes a picture of a run in three dimensions, under pvbatch, with surfaces, walls and a plane.
 
-usage: check_picture.py ROULEAU SOURCE PVBATCH XVFB_RUN
+usage: check_picture.py ROULEAU SOURCE PVBATCH XVFB
 """
 
+import contextlib
 import json
 import os
 import pathlib
@@ -39,12 +40,28 @@ def pixels(path):
     return width, height, len({raw[k * len(raw) // height:(k + 1) * len(raw) // height] for k in range(height)})
 
 
-with tempfile.TemporaryDirectory(prefix="rouleau-picture-") as name:
+@contextlib.contextmanager
+def display():
+    """A display of its own, by a number that the server finds free. It starts afresh for nobody: where the last window of a program
+    closes it otherwise does, and refuses whoever comes meanwhile."""
+    reading, writing = os.pipe()
+    server = subprocess.Popen([PROGRAMS[1], "-displayfd", str(writing), "-screen", "0", "1280x1024x24", "-noreset", "-ac", "-nolisten", "tcp"],
+                              pass_fds=[writing], stderr=subprocess.DEVNULL)
+    try:
+        os.close(writing)
+        with os.fdopen(reading) as number:
+            yield ":" + number.readline().strip()
+    finally:
+        server.terminate()
+        server.wait()
+
+
+with tempfile.TemporaryDirectory(prefix="rouleau-picture-") as name, display() as where:
     folder = pathlib.Path(name)
     (folder / "scene.json").write_text(json.dumps(SCENE))
     subprocess.run([ROULEAU, "run", "scene.json", "--out", "run", "--quiet"], cwd=folder, check=True, capture_output=True)
-    words = [PROGRAMS[1], "-n", str(100 + os.getpid() % 900), "-a", PROGRAMS[0], f"{pathlib.Path(SOURCE).resolve()}/examples/paraview/cells.py", "run", "picture.png", "--state", "cells.pvsm"]
-    result = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=300)
+    words = [PROGRAMS[0], f"{pathlib.Path(SOURCE).resolve()}/examples/paraview/cells.py", "run", "picture.png", "--state", "cells.pvsm"]
+    result = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=300, env={**os.environ, "DISPLAY": where})
     assert result.returncode == 0, result.stdout + result.stderr
     assert "picture.png: fields, membranes, walls at 0.001" in result.stdout, result.stdout
     width, height, rows = pixels(folder / "picture.png")

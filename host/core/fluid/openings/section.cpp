@@ -111,8 +111,8 @@ std::vector<int> parts_of_section(const Domain<D>& domain, int end,
   constexpr int solid = -1, unknown = -2;
   const SectionNodes<D> section(domain);
   const int place = end == 0 ? 0 : domain.size[section.axis()] - 1;
-  std::vector<int> part;
-  for (int i = 0; i < section.count(); ++i) part.push_back(is_fluid(section.node(i, place)) ? unknown : solid);
+  std::vector<int> part(section.count());
+  for (int i = 0; i < section.count(); ++i) part[i] = is_fluid(section.node(i, place)) ? unknown : solid;
   int count = 0;
   for (int first = 0; first < section.count(); ++first) {
     if (part[first] != unknown) continue;
