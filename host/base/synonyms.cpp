@@ -1,6 +1,7 @@
 #include "synonyms.hpp"
 
 #include <algorithm>
+#include <ranges>
 
 #include "text.hpp"
 
@@ -8,110 +9,72 @@ namespace rouleau {
 
 namespace {
 
-constexpr Synonym table[] = {
+struct Meaning {
+  std::string_view ours, words;  // words: parted by spaces
+};
+constexpr Meaning table[] = {
     // fluid
-    {"rho", "density"},
-    {"mu", "viscosity"},
-    {"eta", "viscosity"},
-    {"dynamic_viscosity", "viscosity"},
-    {"acceleration", "gravity"},
-    {"g", "gravity"},
-    {"force", "body_force"},
-    {"convection", "inertia"},
-    {"operator", "collision"},
+    {"density", "rho"},
+    {"viscosity", "mu eta dynamic_viscosity"},
+    {"gravity", "acceleration g"},
+    {"body_force", "force"},
+    {"inertia", "convection"},
+    {"collision", "operator"},
     // domain
-    {"box", "domain"},
-    {"geometry", "domain"},
-    {"channel", "domain"},
-    {"box", "size"},
-    {"length", "size"},
-    {"lengths", "size"},
-    {"dimensions", "size"},
-    {"extent", "size"},
-    {"resolution", "nodes"},
-    {"grid", "nodes"},
-    {"lattice", "nodes"},
+    {"domain", "box geometry channel"},
+    {"size", "box length lengths dimensions extent"},
+    {"nodes", "resolution grid lattice"},
     // numerics
-    {"omega", "tau"},
-    {"relaxation", "tau"},
-    {"relaxation_time", "tau"},
-    {"relaxation_rate", "tau"},
-    {"dt", "tau"},
-    {"time_step", "tau"},
-    {"delta", "kernel"},
-    {"delta_function", "kernel"},
-    {"interpolation", "kernel"},
-    {"solver", "numerics"},
-    {"double", "f64"},
-    {"float64", "f64"},
-    {"float", "f32"},
-    {"float32", "f32"},
-    {"single", "f32"},
+    {"tau", "omega relaxation relaxation_time relaxation_rate dt time_step"},
+    {"kernel", "delta delta_function interpolation"},
+    {"numerics", "solver"},
+    {"f64", "double float64"},
+    {"f32", "float float32 single"},
     // cells
-    {"particles", "cells"},
-    {"species", "cell_types"},
-    {"types", "cell_types"},
-    {"sphere", "circle"},
-    {"disc", "circle"},
-    {"disk", "circle"},
-    {"capsule", "circle"},
-    {"discocyte", "biconcave"},
-    {"rbc", "biconcave"},
-    {"red_cell", "biconcave"},
-    {"ellipsoid", "ellipse"},
-    {"axes", "semi_axes"},
-    {"viscosity", "interior_viscosity"},
-    {"inner_viscosity", "interior_viscosity"},
-    {"internal_viscosity", "interior_viscosity"},
-    {"viscosity_ratio", "interior_viscosity"},
-    {"viscosity_contrast", "interior_viscosity"},
-    {"inner_density", "interior_density"},
-    {"internal_density", "interior_density"},
-    {"density", "interior_density"},
-    {"vertices", "segments"},
-    {"nodes", "segments"},
-    {"points", "segments"},
-    {"laws", "membrane"},
-    {"position", "at"},
-    {"center", "at"},
-    {"orientation", "angle"},
-    {"rotation", "angle"},
-    {"theta", "angle"},
-    {"distance", "spacing"},
-    {"pitch", "spacing"},
-    {"number", "count"},
-    {"haematocrit", "hematocrit"},
-    {"volume_fraction", "hematocrit"},
-    {"area_fraction", "hematocrit"},
+    {"cells", "particles"},
+    {"cell_types", "species types"},
+    {"circle", "sphere disc disk capsule"},
+    {"biconcave", "discocyte rbc red_cell"},
+    {"ellipse", "ellipsoid"},
+    {"semi_axes", "axes"},
+    {"interior_viscosity", "viscosity inner_viscosity internal_viscosity viscosity_ratio viscosity_contrast"},
+    {"interior_density", "inner_density internal_density density"},
+    {"segments", "vertices nodes points"},
+    {"membrane", "laws"},
+    {"at", "position center"},
+    {"angle", "orientation rotation theta"},
+    {"spacing", "distance pitch"},
+    {"count", "number"},
+    {"hematocrit", "haematocrit volume_fraction area_fraction"},
     // interactions
-    {"potentials", "interactions"},
-    {"adhesion", "interactions"},
-    {"pair", "between"},
+    {"interactions", "potentials adhesion"},
+    {"between", "pair"},
     // stages
-    {"phases", "stages"},
-    {"shear", "shear_rate"},
-    {"gamma", "shear_rate"},
-    {"gamma_dot", "shear_rate"},
-    {"pressure", "pressure_gradient"},
-    {"pressure_drop", "pressure_gradient"},
-    {"pressure_difference", "pressure_gradient"},
-    {"time", "duration"},
-    {"end_time", "duration"},
-    {"force", "forces"},
-    {"pull", "forces"},
-    {"tweezers", "forces"},
-    {"direction", "toward"},
-    {"fraction", "share"},
+    {"stages", "phases"},
+    {"shear_rate", "shear gamma gamma_dot"},
+    {"pressure_gradient", "pressure pressure_drop pressure_difference"},
+    {"duration", "time end_time"},
+    {"forces", "force pull tweezers"},
+    {"toward", "direction"},
+    {"share", "fraction"},
 };
 
 }  // namespace
 
-std::span<const Synonym> synonyms() { return table; }
+const std::vector<Synonym>& synonyms() {
+  static const std::vector<Synonym> all = [] {
+    std::vector<Synonym> found;
+    for (const auto& [ours, words] : table)
+      for (const auto word : std::views::split(words, ' ')) found.push_back({{word.begin(), word.end()}, ours});
+    return found;
+  }();
+  return all;
+}
 
 std::string synonym(std::string_view word, const std::vector<std::string>& candidates) {
   std::string lower(word);
   for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
-  for (const Synonym& known : table) {
+  for (const Synonym& known : synonyms()) {
     if (known.word != lower) continue;
     const auto found = std::find(candidates.begin(), candidates.end(), known.ours);
     if (found != candidates.end() && *found != word) return *found;

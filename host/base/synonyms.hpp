@@ -1,7 +1,6 @@
 // What a word was meant to be: common words for what goes by another name here, or the nearest name (text.hpp).
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,7 +12,7 @@ struct Synonym {
 };
 
 /// All that are known; a word may have several meanings, the likelier first.
-std::span<const Synonym> synonyms();
+const std::vector<Synonym>& synonyms();
 
 /// The candidate that is ours for a word, whatever its case; empty where there is none.
 std::string synonym(std::string_view word, const std::vector<std::string>& candidates);
