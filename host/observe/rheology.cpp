@@ -5,7 +5,7 @@
 
 #include "cell_measures.hpp"
 #include "cell_sums.hpp"
-#include "core/fluid/flow_rate.hpp"
+#include "core/fluid/developed_flow.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "core/membrane/geometry.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "constants.hpp"
-#include "core/fluid/layers.hpp"
+#include "core/fluid/developed_flow.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "scene/driving_flow.hpp"
 #include "scene/lattice.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/domain/domain.hpp"
-#include "core/fluid/layers.hpp"
+#include "core/fluid/developed_flow.hpp"
 #include "core/geometry/region.hpp"
 #include "scene.hpp"
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/fluid/developed_flow.hpp"
 #include "core/fluid/openings/opening.hpp"
-#include "core/fluid/oscillation.hpp"
 #include "driving_flow.hpp"
 #include "lattice.hpp"
 #include "scene.hpp"

@@ -6,7 +6,7 @@
 #include <iostream>
 #include <numbers>
 
-#include "core/fluid/flow_rate.hpp"
+#include "core/fluid/developed_flow.hpp"
 #include "flow_fixture.hpp"
 #include "scene/driving_flow.hpp"
 #include "study/exact_flow.hpp"

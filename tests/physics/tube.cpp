@@ -5,7 +5,7 @@
 #include <iostream>
 #include <numbers>
 
-#include "core/fluid/flow_rate.hpp"
+#include "core/fluid/developed_flow.hpp"
 #include "flow_fixture.hpp"
 #include "scene_run.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/fluid/layers.hpp"
+#include "core/fluid/developed_flow.hpp"
 #include "core/membrane/rounding.hpp"
 
 namespace rouleau::core {

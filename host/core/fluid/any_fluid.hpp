@@ -22,7 +22,7 @@ template <int D>
 struct FluidSetting {
   Domain<D> domain;
   double relaxation_rate;  ///< 1/tau of the suspending fluid
-  /// Viscosity at each height y of the lattice over that of `relaxation_rate` (layers.hpp); empty: 1 everywhere.
+  /// Viscosity at each height y of the lattice over that of `relaxation_rate` (viscosity_of_rows); empty: 1 all over.
   std::vector<double> viscosity_of_rows = {};
   bool inertia = false;  ///< initial states include the quadratic terms of the equilibrium
   WallVelocity walls = {};
@@ -73,8 +73,8 @@ struct FluidMeasures {
   /// none.
   double mass, speed;
   std::optional<Energetics<D>> energetics;  ///< if it was wanted
-  /// Mean velocity along Domain::flow_axis of each row (flow_rate.hpp), solid nodes counted as fluid at rest; empty if
-  /// it was not wanted.
+  /// Mean velocity along Domain::flow_axis of each row, as flow_rate() takes it, solid nodes counted as fluid at rest;
+  /// empty if it was not wanted.
   std::vector<double> row_velocities;
 };
 

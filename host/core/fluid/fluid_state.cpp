@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <rouleau/dispatch.hpp>
 
-#include "layers.hpp"
+#include "developed_flow.hpp"
 #include "moving_frame.hpp"
 #include "openings/section.hpp"
 #include "periodic.hpp"

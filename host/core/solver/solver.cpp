@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "core/fluid/developed_flow.hpp"
-#include "core/fluid/flow_rate.hpp"
 #include "core/membrane/motion.hpp"
 
 namespace rouleau::core {

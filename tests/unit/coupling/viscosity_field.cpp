@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/coupling/cell_fraction.hpp"
-#include "core/fluid/layers.hpp"
+#include "core/fluid/developed_flow.hpp"
 #include "core/membrane/geometry.hpp"
 #include "unit/cell_fixture.hpp"
 

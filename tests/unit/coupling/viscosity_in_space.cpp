@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core/coupling/viscosity_field.hpp"
-#include "core/fluid/layers.hpp"
+#include "core/fluid/developed_flow.hpp"
 #include "core/fluid/relaxation.hpp"
 #include "core/surface/triangle_surface.hpp"
 #include "unit/random.hpp"

@@ -4,7 +4,7 @@
 
 #include "core/domain/decomposition.hpp"
 #include "core/domain/transport.hpp"
-#include "core/fluid/layers.hpp"
+#include "core/fluid/developed_flow.hpp"
 #include "unit/flow_fixture.hpp"
 #include "unit/random.hpp"
 #include "unit/shipped_models.hpp"

@@ -6,7 +6,7 @@
 
 #include "core/domain/decomposition.hpp"
 #include "core/domain/transport.hpp"
-#include "core/fluid/flow_rate.hpp"
+#include "core/fluid/developed_flow.hpp"
 #include "core/fluid/periodic.hpp"
 #include "unit/flow_fixture.hpp"
 #include "unit/shipped_models.hpp"
