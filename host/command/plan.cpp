@@ -13,7 +13,6 @@
 #include "plan/ranks/rank_times.hpp"
 #include "run/step_time.hpp"
 #include "scene_options.hpp"
-#include "threads.hpp"
 #include "units/units.hpp"
 
 namespace rouleau::command {

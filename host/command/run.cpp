@@ -18,7 +18,6 @@
 #include "run/simulation.hpp"
 #include "run_words.hpp"
 #include "scene_options.hpp"
-#include "threads.hpp"
 #include "trial/trial.hpp"
 
 namespace rouleau::command {

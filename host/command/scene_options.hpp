@@ -1,4 +1,4 @@
-// What the commands that take a scene have in common: options, search path, reading.
+// What the commands that take a scene have in common: options, search path, reading, how many threads they take.
 #pragma once
 
 #include <boost/program_options.hpp>
@@ -50,5 +50,14 @@ struct PlannedScene {
 
 /// Throws what a run on this machine by so many ranks is refused for: too many nodes of a rank, too little memory.
 void require_startable(const PlannedScene& planned, const plan::Blocks* blocks, int ranks);
+
+/// Of this machine, one at least.
+int processors();
+/// Throws Error(bad_input) for a number that no machine has; `option`: what gave it.
+void check_threads(const char* option, int threads);
+/// No more than have rows of the lattice to share.
+int useful_threads(const scene::Scene& scene, int threads);
+/// Throws Error(input_output) where the system refuses so many: OpenMP's library would end the program.
+void require_threads(const char* option, int threads);
 
 }  // namespace rouleau::command
