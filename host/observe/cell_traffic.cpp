@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "columns.hpp"
@@ -47,11 +48,18 @@ V value_or(const std::vector<V>& values, std::size_t k, V otherwise) {
   return k < values.size() ? values[k] : otherwise;
 }
 
+/// All that has gone through an end along the open axis since the run began.
+template <int end>
+Value volume_through(const Row& row) {
+  const std::vector<double>& openings = row.output.volume_through[end];
+  return std::accumulate(openings.begin(), openings.end(), 0.0);
+}
+
 /// Of one of several openings at an end: what flows through it, and the cells.
 template <int end, int number>
 void add_opening(std::vector<Observable>& columns, bool cells) {
   static const std::string name = (end == 0 ? "inlet_" : "outlet_") + std::to_string(number + 1);
-  static const std::string flow = name + "_flow", of_cells = name + "_cells";
+  static const std::string flow = name + "_flow", volume = name + "_volume", of_cells = name + "_cells";
   const auto add = [&](Observable column) {
     column.end = end, column.number = number;
     columns.push_back(column);
@@ -59,10 +67,14 @@ void add_opening(std::vector<Observable>& columns, bool cells) {
   constexpr auto flow_of = [](const Row& row) -> Value {
     return value_or(row.output.opening_flow[end], number, std::nan(""));
   };
+  constexpr auto volume_of = [](const Row& row) -> Value {
+    return value_or(row.output.volume_through[end], number, std::nan(""));
+  };
   constexpr auto cells_of = [](const Row& row) -> Value {
     return (end == 0 ? 1 : -1) * value_or(row.output.cells_through[end], number, 0L);
   };
-  constexpr const char* through = "flow through one opening, by its number, along the open axis";
+  constexpr const char *through = "flow through one opening, by its number, along the open axis",
+                       *in_all = "all that flowed through it along the open axis since the run began";
   if (cells) {
     const char* const doc =
         end == 0 ? "cells that came in through it, less those that left" : "cells that left through it";
@@ -70,6 +82,8 @@ void add_opening(std::vector<Observable>& columns, bool cells) {
   } else {
     add({.name = flow, .unit = "m2/s", .doc = through, .value = flow_of, .in_plane = true, .at_openings = true});
     add({.name = flow, .unit = "m3/s", .doc = through, .value = flow_of, .in_space = true, .at_openings = true});
+    add({.name = volume, .unit = "m2", .doc = in_all, .value = volume_of, .in_plane = true, .at_openings = true});
+    add({.name = volume, .unit = "m3", .doc = in_all, .value = volume_of, .in_space = true, .at_openings = true});
   }
 }
 
@@ -82,6 +96,10 @@ void add_openings(std::vector<Observable>& columns, bool cells, std::integer_seq
 constexpr const char* through_inlet =
     "flow through all of the inlet, along the open axis, at the first nodes behind it";
 constexpr const char* through_outlet = "likewise, of the outlet, at the last nodes before it";
+constexpr const char *volume_in =
+                         "all that flowed through the inlet along the open axis since the run began, summed over "
+                         "every step: differences over time are mean flows",
+                     *volume_out = "likewise, through the outlet";
 
 }  // namespace
 
@@ -94,6 +112,12 @@ std::vector<Observable> columns_at_openings() {
       at_opening<&Snapshot::inlet_pressure>("inlet_pressure", "Pa",
                                             "mean of the fluid's nodes at the inlet, half a spacing behind it"),
       at_opening<&Snapshot::outlet_pressure>("outlet_pressure", "Pa", "likewise, before the outlet")};
+  const auto volume = [&](const char* name, const char* doc, Value (*value)(const Row&)) {
+    all.push_back({.name = name, .unit = "m2", .doc = doc, .value = value, .in_plane = true, .at_openings = true});
+    all.push_back({.name = name, .unit = "m3", .doc = doc, .value = value, .in_space = true, .at_openings = true});
+  };
+  volume("inlet_volume", volume_in, volume_through<0>);
+  volume("outlet_volume", volume_out, volume_through<1>);
   add_openings(all, false, std::make_integer_sequence<int, most_openings>());
   return all;
 }
@@ -131,13 +155,13 @@ RunKind kind_of(const scene::Scene& scene) {
   return kind;
 }
 
-void CellTraffic::begin_stage(const std::string& name, double time) {
+void CellTraffic::begin_stage(const std::string& name) {
   stages_.push_back({name});
-  if (!flows_) last_time_ = time;
+  before_ = {};
 }
 
-auto CellTraffic::stage(double time) -> StageTraffic& {
-  if (stages_.empty()) begin_stage("", time);
+auto CellTraffic::stage() -> StageTraffic& {
+  if (stages_.empty()) begin_stage("");
   return stages_.back();
 }
 
@@ -146,7 +170,7 @@ void CellTraffic::came(int cell, double volume, double time, int end, int openin
   if (end == no_opening) return;
   ++in_;
   ++at_opening(through_, end, opening);
-  Passed& there = at_opening(stage(time).ends, end, opening);
+  Passed& there = at_opening(stage().ends, end, opening);
   there.in += volume, ++there.cells_in;
 }
 
@@ -155,7 +179,7 @@ void CellTraffic::left(int cell, double time, int end, int opening) {
   inside_.erase(cell);
   ++out_;
   --at_opening(through_, end, opening);
-  Passed& there = at_opening(stage(time).ends, end, opening);
+  Passed& there = at_opening(stage().ends, end, opening);
   there.out += visit.volume, ++there.cells_out;
   if (visit.placed) return;  // it was there before the run
   const double stay = time - visit.since;
@@ -165,16 +189,10 @@ void CellTraffic::left(int cell, double time, int end, int opening) {
   ++stayed_;
 }
 
-void CellTraffic::flowed(const std::array<std::vector<double>, 2>& along_axis, double time) {
-  for (const int end : {0, 1}) {
-    for (std::size_t k = 0; flows_ && k < along_axis[end].size(); ++k) {
-      const double along = (last_flow_[end].at(k) + along_axis[end][k]) / 2 * (time - last_time_);
-      at_opening(stage(time).ends, end, static_cast<int>(k)).flow += end == 0 ? along : -along;
-    }
-  }
-  flows_ = true;
-  last_flow_ = along_axis;
-  last_time_ = time;
+void CellTraffic::flowed(const std::array<std::vector<double>, 2>& in_stage) {
+  for (const int end : {0, 1})
+    for (std::size_t k = 0; k < in_stage[end].size(); ++k)
+      at_opening(stage().ends, end, static_cast<int>(k)).flow = in_stage[end][k] + value_or(before_[end], k, 0.0);
 }
 
 double CellTraffic::come_in() const {
@@ -195,6 +213,10 @@ void CellTraffic::tell(Snapshot& snapshot) const {
   snapshot.cells_inside = inside();
   snapshot.cells_out = out();
   snapshot.cells_through = through_;
+  for (const StageTraffic& stage : stages_)
+    for (const int end : {0, 1})
+      for (std::size_t k = 0; k < stage.ends[end].size(); ++k)
+        at_opening(snapshot.volume_through, end, static_cast<int>(k)) += (end == 0 ? 1 : -1) * stage.ends[end][k].flow;
 }
 
 auto CellTraffic::Passed::operator+=(const Passed& more) -> Passed& {

@@ -27,16 +27,15 @@ class CellTraffic {
  public:
   static constexpr int no_opening = -1;
 
-  /// A stage begins, at a time of the run in s.
-  void begin_stage(const std::string& name, double time);
+  void begin_stage(const std::string& name);
   /// A cell of so much volume is there from now on. `end`: 0, through the lower end, or 1; `no_opening`: it was placed.
   /// `opening`: which of those at the end (core::parts_of_section).
   void came(int cell, double volume, double time, int end, int opening = 0);
   /// It leaves through an end. Throws std::out_of_range for a cell that is not there.
   void left(int cell, double time, int end, int opening = 0);
-  /// What flows along the open axis through each opening of both ends at this time, cells included, m3/s or m2/s; it
-  /// changes linearly between two calls.
-  void flowed(const std::array<std::vector<double>, 2>& along_axis, double time);
+  /// What all steps of the stage so far have brought in through each opening of both ends, less what left there, cells
+  /// included (core::AnyFluid::passed).
+  void flowed(const std::array<std::vector<double>, 2>& in_stage);
 
   /// What has flowed in through the lower end, less what flowed out there, since the run began.
   [[nodiscard]] double come_in() const;
@@ -52,12 +51,11 @@ class CellTraffic {
   /// discharge_hematocrit}: the net volume of cells over that of all, null where nothing flowed; and where an end has
   /// several, openings: the same of each. `unit`: of volumes, "m3" or "m2".
   [[nodiscard]] nlohmann::json summary(const std::string& unit) const;
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(CellTraffic, inside_, in_, out_, stayed_, residence_, stages_, flows_, last_flow_,
-                                 last_time_, through_)
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(CellTraffic, inside_, in_, out_, stayed_, residence_, stages_, before_, through_)
 
  private:
   struct StageTraffic;
-  StageTraffic& stage(double time);
+  StageTraffic& stage();
   struct Visit {
     double since, volume;
     bool placed;
@@ -85,10 +83,8 @@ class CellTraffic {
   long in_ = 0, out_ = 0, stayed_ = 0;  ///< stayed: of those that left, the ones that had come in
   Residence residence_;
   std::vector<StageTraffic> stages_;
-  bool flows_ = false;  ///< what flows has been said in this stage
-  std::array<std::vector<double>, 2> last_flow_{};
-  double last_time_ = 0;
-  std::array<std::vector<long>, 2> through_{};  ///< cells that came in, less those that left, by opening
+  std::array<std::vector<double>, 2> before_{};  ///< flow in this stage that is not counted; empty: 0
+  std::array<std::vector<long>, 2> through_{};   ///< cells that came in, less those that left, by opening
 };
 
 }  // namespace rouleau::observe

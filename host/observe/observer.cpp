@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "bonds.hpp"
 #include "cell_sums.hpp"
@@ -116,10 +117,15 @@ core::FluidMeasures<D> Observer::measure_fluid(core::AnyFluid<D>& fluid, const s
 
 template <int D>
 double Observer::follow_fluid(const core::AnyFluid<D>& fluid, const core::FluidMeasures<D>& measured) {
-  if (std::isnan(initial_mass_)) initial_mass_ = measured.mass;
-  const auto nodes = static_cast<double>(fluid.setting().domain.nodes());
-  if (!scene_->domain.is_open())  // what goes through openings is no loss
-    mass_drift_ = std::max(mass_drift_, std::abs(measured.mass - initial_mass_) / nodes);
+  double mass = measured.mass, whole = static_cast<double>(fluid.setting().domain.nodes());
+  if (scene_->domain.is_open()) {  // what goes through openings is no loss
+    for (const std::vector<double>& end : fluid.passed()) {
+      const double in = std::accumulate(end.begin(), end.end(), 0.0);
+      mass -= in, whole += std::max(in, 0.0);
+    }
+  }
+  if (std::isnan(initial_mass_)) initial_mass_ = mass;
+  mass_drift_ = std::max(mass_drift_, std::abs(mass - initial_mass_) / whole);
   const double mach = units::mach_number(measured.speed);
   mach_max_ = std::max(mach_max_, mach);
   return mach;

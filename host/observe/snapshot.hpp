@@ -151,7 +151,8 @@ struct Snapshot {
          outlet_flow = inlet_flow;  ///< m2/s, in three dimensions m3/s, along the open axis; NaN without openings
   double inlet_pressure = inlet_flow, outlet_pressure = inlet_flow;  ///< Pa, likewise
   std::array<std::vector<double>, 2> opening_flow{};                 ///< of each opening of both ends, as inlet_flow
-  double cell_free_layer_lower = 0, cell_free_layer_upper = 0;       ///< m; NaN without walls or cells
+  std::array<std::vector<double>, 2> volume_through{};  ///< m2 or m3, likewise, since the run began (CellTraffic)
+  double cell_free_layer_lower = 0, cell_free_layer_upper = 0;  ///< m; NaN without walls or cells
   double cell_free_layer_empty = 0;  ///< share of the columns in which there is no cell; NaN as the layers
   double particle_stress = 0;        ///< xy, Pa: membranes and viscosity contrast, per area of the domain
   double first_normal_stress = std::numeric_limits<double>::quiet_NaN(),

@@ -296,9 +296,10 @@ Restored restore(const std::shared_ptr<const files::CheckpointReader>& reader, c
                  const core::Box<D>& block, RunState& state, typename core::AnySolver<D>::Cells& cells,
                  const TakePart<D>& take_part) {
   try {
-    const Json saved = reader->state();
-    Json run = saved.at("run");
+    Json saved = reader->state();
+    Json& run = saved.at("run");
     complete_former_state<D>(run, plan);
+    if (plan.scene->domain.openings) complete_former_traffic(run, saved.at("traffic"));
     run.get_to(state);
     if (plan.scene->domain.openings) saved.at("traffic").get_to(state.traffic);
     if (plan.scene->output.profiles) saved.at("profiles").get_to(state.profiles);

@@ -193,6 +193,17 @@ Resumption open_checkpoint(const std::filesystem::path& directory, const plan::P
   return resumption;
 }
 
+void complete_former_traffic(Json& run, Json& traffic) {
+  Json& cells = traffic.at("cells");
+  if (cells.contains("before_")) return;
+  run.at("observer")["initial_mass_"] = std::numeric_limits<double>::quiet_NaN();
+  cells["before_"] = {Json::array(), Json::array()};
+  if (cells.at("stages_").empty()) return;
+  for (const int end : {0, 1})
+    for (const Json& opening : cells["stages_"].back().at("ends").at(end))
+      cells["before_"][end].push_back(opening.at("flow"));
+}
+
 template <int D>
 void complete_former_state(Json& run, const plan::Plan& plan) {
   Json &observer = run.at("observer"), &history = run.at("history");

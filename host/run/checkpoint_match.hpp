@@ -40,5 +40,7 @@ Resumption open_checkpoint(const std::filesystem::path& directory, const plan::P
 /// from how it was placed, which cells an output had, and columns that there were not. What is there stays as it is.
 template <int D>
 void complete_former_state(nlohmann::json& run, const plan::Plan& plan);
+/// The same of a TrafficState that had measured flows now and then: it goes on from them, and mass from what there is.
+void complete_former_traffic(nlohmann::json& run, nlohmann::json& traffic);
 
 }  // namespace rouleau::run

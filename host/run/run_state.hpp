@@ -49,13 +49,12 @@ class PassCosts {
 struct TrafficState {
   long next = 0;  ///< step of the run at which to look who comes and goes
   observe::CellTraffic cells;
-  bool looked = false;  ///< and what flows is still to be measured
   /// Whether it is about so many cells, those that have left among them.
   [[nodiscard]] bool fits(std::size_t count) const {
     const std::vector<int> there = cells.there();
     return there.empty() || (there.front() >= 0 && there.back() < static_cast<int>(count));
   }
-  NLOHMANN_DEFINE_TYPE_INTRUSIVE(TrafficState, next, cells, looked)
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(TrafficState, next, cells)
 };
 
 struct RunState {

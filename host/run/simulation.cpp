@@ -226,7 +226,6 @@ class Simulation final : StepHooks {
     course_.count_to(step);
     solver().end_messages();
     if (fails(monitor::check_nodes(solver(), scene().checks.node_step, setting()))) return false;
-    traffic_.measure();
     if (checkpoints_.pending()) {
       observe::Observer look = state_.observer;  // one that leaves no trace
       checkpoints_.settle(!monitor::check_state(look, solver(), setting(), plan_));
@@ -284,6 +283,7 @@ class Simulation final : StepHooks {
   /// then the run fails, and false is returned.
   bool write(const core::FluidMeasures<D>& fluid, bool with_fields) {
     observe::Snapshot snapshot = state_.observer.observe(solver(), fluid, setting(), with_fields);
+    if (scene().domain.is_open()) traffic_.measure();
     if (ranks().first()) {
       course_.date(snapshot);
       if (scene().domain.is_open()) state_.traffic.cells.tell(snapshot);

@@ -18,7 +18,7 @@ void StageCourse::begin(const core::AnySolver<D>& solver) {
   state_.rest_watch.stop();
   if (setting().stage->until_at_rest) state_.rest_watch.start(0, solver.cells(), solver.ghosts());
   state_.equilibrium.start();
-  if (plan_.scene->domain.is_open()) state_.traffic.cells.begin_stage(setting().stage->name, state_.time);
+  if (plan_.scene->domain.is_open()) state_.traffic.cells.begin_stage(setting().stage->name);
 }
 
 bool StageCourse::compares_positions() const {

@@ -6,7 +6,6 @@
 
 #include "base/error.hpp"
 #include "core/fluid/openings/section.hpp"
-#include "observe/rheology.hpp"
 #include "shape/extent.hpp"
 
 namespace rouleau::run {
@@ -41,7 +40,7 @@ bool Traffic<D>::due() {
   TrafficState& traffic = state_.traffic;
   if (!is_open() || state_.steps < traffic.next) return false;
   traffic.next = state_.steps + steps_to_next();
-  traffic.looked = true;
+  measure();
   change_ = {};
   find_gone();
   find_come(state_.time_at(plan_.stages[state_.stage]));
@@ -123,13 +122,10 @@ std::vector<double> Traffic<D>::ways(const std::vector<typename Engine<D>::Cells
 
 template <int D>
 void Traffic<D>::measure() {
-  if (!std::exchange(state_.traffic.looked, false)) return;
-  const scene::StageSetting& setting = plan_.stages[state_.stage];
-  core::AnyFluid<D>& fluid = engine_.solver().fluid();
-  fluid.settle();
-  observe::Snapshot now;
-  observe::observe_openings(fluid, *plan_.scene, setting.units, now);
-  state_.traffic.cells.flowed(now.opening_flow, state_.time_at(setting));
+  auto in_stage = engine_.solver().fluid().passed();
+  for (std::vector<double>& end : in_stage)
+    for (double& volume : end) volume *= std::pow(plan_.stages[state_.stage].units.length, D);
+  state_.traffic.cells.flowed(in_stage);
 }
 
 template <int D>

@@ -36,7 +36,7 @@ class Traffic {
   [[nodiscard]] bool found() const { return change_.any(); }
   /// How many have come in after so long, s, or wait for room.
   [[nodiscard]] int due_by(double time) { return inflow().due(time, state_.traffic.cells.come_in()); }
-  /// When the forces of a step are known: what flows is measured if due() has looked before this step.
+  /// Between steps, where there are openings: what has flowed through them is known from now on.
   void measure();
   /// What due() has found is done.
   Change take();

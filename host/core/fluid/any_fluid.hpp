@@ -37,9 +37,9 @@ struct FluidSetting {
 };
 
 /// Numbers of each link to a solid node, by its place: of the node in the whole lattice, times the number of
-/// velocities, plus the link's. Places rise.
+/// velocities, plus the link's; and of each link through an opening, by -1 less that. Places rise.
 struct LinkMemory {
-  std::vector<double> place, left, away;  ///< SolidLinks::Last
+  std::vector<double> place, left, away;  ///< SolidLinks::Link; of an opening's, `left` is OpenLinks::Link::passed
 };
 
 /// Moments of one node before collision.
@@ -136,6 +136,10 @@ class AnyFluid {
   [[nodiscard]] FluidMeasures<D> mass_and_speed() const { return measure(WantedMeasures{}); }
   /// Of the lower and the upper end of the open axis; settled, with the next step's force spread.
   [[nodiscard]] virtual std::array<EndFlow, 2> end_flows() const = 0;
+  /// What all steps since this fluid began, on whatever blocks, have brought in through each opening of both ends
+  /// (parts_of_section), less what left there: sums of populations, which are volumes at density 1. Where walls keep
+  /// the mass, both ends together are what mass() has gained, but for rounding.
+  [[nodiscard]] virtual std::array<std::vector<double>, 2> passed() const = 0;
   [[nodiscard]] double mass() const { return mass_and_speed().mass; }
   [[nodiscard]] Energetics<D> energetics() const { return *measure({.energetics = true}).energetics; }
   [[nodiscard]] std::vector<double> row_velocities() const { return measure({.row_velocities = true}).row_velocities; }

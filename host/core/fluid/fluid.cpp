@@ -252,6 +252,11 @@ std::array<EndFlow, 2> Fluid<T, Set>::end_flows() const {
 }
 
 template <class T, class Set>
+std::array<std::vector<double>, 2> Fluid<T, Set>::passed() const {
+  return core::passed(state_, ranks_);
+}
+
+template <class T, class Set>
 std::vector<double> Fluid<T, Set>::row_velocities_without_membranes() const {
   return core::row_velocities_without_membranes(state_, ranks_);
 }

@@ -113,6 +113,7 @@ class Fluid final : public AnyFluid<Set::dimension> {
   [[nodiscard]] bool single_precision() const override { return std::is_same_v<T, float>; }
   [[nodiscard]] FluidMeasures<dimension> measure(WantedMeasures wanted) const override;
   [[nodiscard]] std::array<EndFlow, 2> end_flows() const override;
+  [[nodiscard]] std::array<std::vector<double>, 2> passed() const override;
   [[nodiscard]] LinkMemory link_memory() const override { return state_.link_memory(ranks_); }
   void recall_links(const LinkMemory& memory) override { state_.recall_links(memory); }
   /// Mean velocities of rows without the half step that the membranes' forces have still to act, and so before these

@@ -302,6 +302,29 @@ std::array<EndFlow, 2> end_flows(const FluidState<T, Set>& state, const Ranks<Se
 }
 
 template <class T, class Set>
+std::array<std::vector<double>, 2> passed(const FluidState<T, Set>& state, const Ranks<Set::dimension>& ranks) {
+  constexpr int dimension = Set::dimension;
+  const SectionNodes<dimension> nodes(state.setting.domain);
+  std::array<std::vector<double>, 2> all;
+  for (const int end : {0, 1}) {
+    const std::vector<int>& parts = state.parts_of_ends[end];
+    std::vector<ExactSum> sums(static_cast<std::size_t>(1 + *std::max_element(parts.begin(), parts.end())));
+    for (int i = 0; i < state.lattice.rows(); ++i) {
+      for (const auto& link : state.openings->of_row(i)) {
+        if ((Set::velocity[link.q][nodes.axis()] > 0) != (end == 0)) continue;
+        std::array<int, dimension> at = state.setting.domain.block.begin;
+        at[0] += link.x;
+        for (int k = 1; k < dimension; ++k) at[k] += state.lattice.row(i)[k - 1];
+        sums[static_cast<std::size_t>(parts[nodes.number(at)])].add(link.passed);
+      }
+    }
+    add_up(ranks, sums);
+    for (const ExactSum& sum : sums) all[end].push_back(sum.value());
+  }
+  return all;
+}
+
+template <class T, class Set>
 WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ranks<Set::dimension>& ranks,
                                        const WallVelocity& walls) {
   using Sums = WallForceSums<Set::dimension>;
@@ -370,6 +393,7 @@ WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ra
                                     const WallVelocity&, WantedMeasures);                                    \
   template std::vector<double> row_velocities_without_membranes(const FluidState<T, Set>&, const Ranks<D>&); \
   template std::array<EndFlow, 2> end_flows(const FluidState<T, Set>&, const Ranks<D>&);                     \
+  template std::array<std::vector<double>, 2> passed(const FluidState<T, Set>&, const Ranks<D>&);            \
   template WallForces<D> wall_forces(const FluidState<T, Set>&, const Ranks<D>&, const WallVelocity&);
 ROULEAU_INSTANTIATE(float, D2Q9, 2)
 ROULEAU_INSTANTIATE(double, D2Q9, 2)

@@ -33,6 +33,9 @@ std::vector<double> row_velocities_without_membranes(const FluidState<T, Set>& s
 /// AnyFluid::end_flows.
 template <class T, class Set>
 std::array<EndFlow, 2> end_flows(const FluidState<T, Set>& state, const Ranks<Set::dimension>& ranks);
+/// AnyFluid::passed.
+template <class T, class Set>
+std::array<std::vector<double>, 2> passed(const FluidState<T, Set>& state, const Ranks<Set::dimension>& ranks);
 /// AnyFluid::wall_forces, of walls that had these speeds.
 template <class T, class Set>
 WallForces<Set::dimension> wall_forces(const FluidState<T, Set>& state, const Ranks<Set::dimension>& ranks,

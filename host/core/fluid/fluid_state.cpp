@@ -209,6 +209,7 @@ LinkMemory FluidState<T, Set>::link_memory(const Ranks<dimension>& ranks) const 
         mine.push_back(
             {place_of_link(i, link.x, link.q), static_cast<double>(link.left), static_cast<double>(link.away)});
     });
+    for_open_links(i, [&](const auto& link, double place) { mine.push_back({place, link.passed, 0}); });
   }
   std::vector<std::array<double, 3>> all;
   for (const auto& of_rank : all_of(ranks, std::move(mine))) all.insert(all.end(), of_rank.begin(), of_rank.end());
@@ -223,16 +224,19 @@ LinkMemory FluidState<T, Set>::link_memory(const Ranks<dimension>& ranks) const 
 
 template <class T, class Set>
 void FluidState<T, Set>::recall_links(const LinkMemory& memory) {
+  const auto recall = [&](double place, auto take) {
+    const auto found = std::lower_bound(memory.place.begin(), memory.place.end(), place);
+    if (found == memory.place.end() || *found != place) return;
+    const auto at = static_cast<std::size_t>(found - memory.place.begin());
+    take(memory.left[at], memory.away[at]);
+  };
   for (int i = 0; i < lattice.rows(); ++i) {
     for_links(i, [&](std::size_t piece, const Pointers&) {
-      for (auto& link : links->of_piece(piece)) {
-        const double place = place_of_link(i, link.x, link.q);
-        const auto found = std::lower_bound(memory.place.begin(), memory.place.end(), place);
-        if (found == memory.place.end() || *found != place) continue;
-        const auto at = static_cast<std::size_t>(found - memory.place.begin());
-        link.left = static_cast<T>(memory.left[at]), link.away = static_cast<T>(memory.away[at]);
-      }
+      for (auto& link : links->of_piece(piece))
+        recall(place_of_link(i, link.x, link.q),
+               [&](double left, double away) { link.left = static_cast<T>(left), link.away = static_cast<T>(away); });
     });
+    for_open_links(i, [&](auto& link, double place) { recall(place, [&](double sum, double) { link.passed = sum; }); });
   }
 }
 

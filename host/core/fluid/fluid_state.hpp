@@ -89,6 +89,12 @@ struct FluidState {
       node = node * setting.domain.size[k] + setting.domain.block.begin[k] + (k > 0 ? row[std::max(k - 1, 0)] : x);
     return node * velocity_count + q;
   }
+  /// Calls function(link, LinkMemory::place) for the links of row i through openings.
+  template <class Function>
+  void for_open_links(int i, Function function) const {
+    if (!openings) return;
+    for (auto& link : openings->of_row(i)) function(link, -1 - place_of_link(i, link.x, link.q));
+  }
   /// 1/tau of the fluid at a row of the block, cells aside.
   [[nodiscard]] double rate_of_row(const Row& row) const {
     return setting.viscosity_of_rows.empty() ? setting.relaxation_rate : rate_of_height[row[0]];

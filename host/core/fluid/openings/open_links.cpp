@@ -140,6 +140,7 @@ void OpenLinks<T, Set>::add(Lattice<T, Set>& lattice, const End& end, const std:
                       .drag = static_cast<T>(end.crossing(node, q).drag),
                       .next = *own,
                       .held = 0,
+                      .passed = 0,
                       .x = x,
                       .q = static_cast<signed char>(q),
                       .pressure = end.of_pressure()});
@@ -150,8 +151,8 @@ template <class T, class Set>
 void OpenLinks<T, Set>::before_collision(int i, const In& in) {
   int known = -1;
   T density = 0, velocity = 0;
-  for_row(i, [&](Link& link) {
-    if (!link.pressure) return;
+  for (Link& link : of_row(i)) {
+    if (!link.pressure) continue;
     if (known != link.x) {
       known = link.x, density = 0, velocity = half_force_;
       for (int q = 0; q < Set::velocity_count; ++q) {
@@ -164,7 +165,7 @@ void OpenLinks<T, Set>::before_collision(int i, const In& in) {
         (in[link.q][link.x] + in[Set::opposite[link.q]][link.x]) / 2 - weight * density - link.resistance * velocity;
     const T crossing = velocity * link.rise + link.drag;
     link.held += link.convection * (crossing * crossing - velocity * velocity);
-  });
+  }
 }
 
 template class OpenLinks<float, D2Q9>;

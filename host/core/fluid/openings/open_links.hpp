@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/fluid/lattice.hpp"
@@ -37,28 +38,6 @@ class OpenLinks {
     double viscosity, body_force;  ///< along the axis
     bool inertia;
   };
-  OpenLinks(Lattice<T, Set>& lattice, const std::array<Opening, 2>& openings, const SolidNodes<dimension>* solid,
-            const WallVelocity& walls, const FlowThere& flow);
-
-  /// The populations of an even step have been set, with what comes in among them.
-  void restart() {
-    for (Link& link : links_) link.next = *link.own;
-  }
-  /// Before row i is collided, and before its links to solid nodes look at it. May be repeated.
-  void before_step(Parity parity, int i) {
-    for_row(i, [&](Link& link) { *(parity == Parity::even ? link.own : link.back) = link.next; });
-  }
-  /// When all that comes to row i is there; `in`, `out`: as the collision gets them.
-  void before_collision(int i, const In& in);
-  void after_step(int i, const Out& out) {
-    for_row(i, [&](Link& link) {
-      const T left = out[Set::opposite[link.q]][link.x];
-      link.next = link.known + (link.pressure ? link.held + (out[link.q][link.x] - left) / 2 : left);
-    });
-  }
-  [[nodiscard]] std::size_t bytes() const { return links_.size() * sizeof(Link); }
-
- private:
   struct Link {
     T *own, *back;  ///< where an even and an odd step read f_q
     T known;        ///< 6 w_q c_q . u, or 6 w_q p without velocity
@@ -67,15 +46,35 @@ class OpenLinks {
     T rise, drag;   ///< where the link crosses the plane, the velocity is u(x) rise + drag
     T next;         ///< f_q of the next step
     T held;         ///< what f_q(x, t + 1) has of this step before collision
+    double passed;  ///< what has come in by it, less what has left
     int x;
     signed char q;
     bool pressure;
   };
-  template <class Function>
-  void for_row(int i, Function function) {
-    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) function(links_[k]);
-  }
+  OpenLinks(Lattice<T, Set>& lattice, const std::array<Opening, 2>& openings, const SolidNodes<dimension>* solid,
+            const WallVelocity& walls, const FlowThere& flow);
 
+  /// The populations of an even step have been set, with what comes in among them.
+  void restart() {
+    for (Link& link : links_) link.next = *link.own;
+  }
+  [[nodiscard]] std::span<Link> of_row(int i) { return {links_.data() + first_[i], first_[i + 1] - first_[i]}; }
+  /// Before row i is collided, and before its links to solid nodes look at it. May be repeated.
+  void before_step(Parity parity, int i) {
+    for (Link& link : of_row(i)) *(parity == Parity::even ? link.own : link.back) = link.next;
+  }
+  /// When all that comes to row i is there; `in`, `out`: as the collision gets them.
+  void before_collision(int i, const In& in);
+  void after_step(int i, const Out& out) {
+    for (Link& link : of_row(i)) {
+      const T left = out[Set::opposite[link.q]][link.x];
+      link.next = link.known + (link.pressure ? link.held + (out[link.q][link.x] - left) / 2 : left);
+      link.passed += static_cast<double>(link.next) - static_cast<double>(left);
+    }
+  }
+  [[nodiscard]] std::size_t bytes() const { return links_.size() * sizeof(Link); }
+
+ private:
   template <class End>
   void add(Lattice<T, Set>& lattice, const End& end, const std::array<int, dimension>& node, bool inertia);
 
