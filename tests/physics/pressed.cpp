@@ -75,12 +75,12 @@ struct Bench {
   std::unique_ptr<Solver<double, Set>> solver;
 };
 
-/// 1e4 steps, in which no node may go through a wall; then one is put there.
+/// So many steps, in which no node may go through a wall; then one is put there.
 template <int D>
-void press(const char* what, Bench<D>& bench, double near) {
+void press(const char* what, Bench<D>& bench, double near, int steps) {
   CAPTURE(what);
   double least = INFINITY;
-  for (int step = 0; step < 10000; step += 50) {
+  for (int step = 0; step < steps; step += 50) {
     bench.solver->step(50);
     REQUIRE_FALSE(bench.solver->cell_tasks()->beyond_wall());
     least = std::min(least, bench.gap());
@@ -130,22 +130,18 @@ std::vector<std::string> ring_scene(const std::string& at, const std::string& in
 }
 const std::string rest = R"(/stages=[{"name": "rest", "duration": "1 s"}])";
 
-}  // namespace
-
-TEST_CASE("a cell that is pressed into a corner or into a slit never crosses a wall, and one that does is noticed",
-          "[walls]") {
+void press_in_plane(int steps) {
   // An acute corner, of which both walls draw the ring in.
   Bench<2> corner(ring, ring_scene(R"("6.35 um", "4 um")", held("ring", "3e-6"), rest),
                   polygon({{5, 19.5}, {55, 2}, {55, 37}}));
-  press<2>("ring drawn into a corner", corner, 1.5);
+  press<2>("ring drawn into a corner", corner, 1.5, steps);
   // Flow through a slit of a third of the ring's diameter.
   Bench<2> slit(ring, ring_scene(R"("4.4 um", "4 um")", repelled("ring", "2e-5"), flow),
                 outside_of(union_of<2>({block(32, 40, -9, 16.5), block(32, 40, 22.5, 49), block(-1, 3, -9, 5)})));
-  press<2>("ring pressed into a slit", slit, 1.5);
+  press<2>("ring pressed into a slit", slit, 1.5, steps);
 }
 
-TEST_CASE("in three dimensions a cell that is pressed into a corner or into a slit never crosses a wall",
-          "[space][walls]") {
+void press_in_space(int steps) {
   const auto in_space = [](const std::string& at, const std::string& interaction, const std::string& stage) {
     return std::vector<std::string>{
         R"(/domain={"size": ["9 um", "6 um", "6 um"], "nodes": [36, 24, 24], "y": {"lower": {"wall": {}}, "upper": {"wall": {}}},
@@ -155,10 +151,28 @@ TEST_CASE("in three dimensions a cell that is pressed into a corner or into a sl
   // Between two tilted planes and one across z.
   Bench<3> corner(capsule, in_space(R"("5.1 um", "3 um", "2 um")", held("capsule", "3e-6"), rest),
                   extruded(polygon({{3, 11.5}, {34, -1}, {34, 24}}), 2, 0.3, 40));
-  press<3>("capsule drawn into a corner", corner, 1.5);
+  press<3>("capsule drawn into a corner", corner, 1.5, steps);
   Bench<3> slit(
       capsule, in_space(R"("3 um", "3 um", "3 um")", repelled("capsule", "2e-5"), flow),
       extruded(outside_of(union_of<2>({block(20, 26, -9, 8.5), block(20, 26, 14.5, 40), block(-1, 3, -9, 4)})), 2, -20,
                50));
-  press<3>("capsule pressed into a slit", slit, 1.5);
+  press<3>("capsule pressed into a slit", slit, 1.5, steps);
+}
+
+}  // namespace
+
+TEST_CASE("a cell that is pressed into a corner or into a slit never crosses a wall, and one that does is noticed",
+          "[walls]") {
+  press_in_plane(10000);
+}
+
+TEST_CASE("in three dimensions a cell that is pressed into a corner or into a slit never crosses a wall",
+          "[space][walls]") {
+  press_in_space(10000);
+}
+
+TEST_CASE("nor does it in ten times as many steps", "[walls][weekly]") { press_in_plane(100000); }
+
+TEST_CASE("nor does it in three dimensions, in ten times as many steps", "[space][walls][weekly]") {
+  press_in_space(100000);
 }
