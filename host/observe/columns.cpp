@@ -174,7 +174,8 @@ constexpr Observable series_columns[] = {
     {"area_drift_max", "", "largest relative change of a cell's area since the start, of all cells, at this instant",
      output<&Snapshot::area_drift_max>, "Largest relative area drift"},
     {"mass_drift", "",
-     "largest relative change of the fluid's mass within a stage, so far; between openings, beyond what came in and left, over what was there and came in",
+     "largest relative change of the fluid's mass within a stage, so far; "
+     "between openings, beyond what came in and left, over what was there and came in",
      output<&Snapshot::mass_drift>, "Relative mass drift"},
     {"area_leakage_max", "",
      "largest change of a cell's area or volume that `numerics.area_correction` put back; `nan` without it",
