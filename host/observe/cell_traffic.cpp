@@ -74,7 +74,7 @@ void add_opening(std::vector<Observable>& columns, bool cells) {
     return (end == 0 ? 1 : -1) * value_or(row.output.cells_through[end], number, 0L);
   };
   constexpr const char *through = "flow through one opening, by its number, along the open axis",
-                       *in_all = "all that flowed through it along the open axis since the run began";
+                       *in_all = "what flowed through it since the run began";
   if (cells) {
     const char* const doc =
         end == 0 ? "cells that came in through it, less those that left" : "cells that left through it";
@@ -96,10 +96,8 @@ void add_openings(std::vector<Observable>& columns, bool cells, std::integer_seq
 constexpr const char* through_inlet =
     "flow through all of the inlet, along the open axis, at the first nodes behind it";
 constexpr const char* through_outlet = "likewise, of the outlet, at the last nodes before it";
-constexpr const char *volume_in =
-                         "all that flowed through the inlet along the open axis since the run began, summed over "
-                         "every step: differences over time are mean flows",
-                     *volume_out = "likewise, through the outlet";
+constexpr const char* volume_in = "all that flowed in since the run began; differences over time are mean flows";
+constexpr const char* volume_out = "likewise, that flowed out";
 
 }  // namespace
 
