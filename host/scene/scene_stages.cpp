@@ -379,12 +379,12 @@ Output read_output(const SceneFields& fields, const std::vector<Stage>& stages, 
                         ? "\"r\" is the distance from the axis of a tube, and the domain has none\ntake \"y\", or give "
                           "\"walls\": {\"tube\": ..}"
                         : "across a tube take \"r\", the distance from its axis");
-    if (output.cells.never())
+    if (!fields.has("/output/cells"))
       fields.refuse("/output/profiles", "profiles are taken when cells are written\ngive output.cells");
   });
   output.bond_share = fields.value_or("/output/bond_share", output.bond_share);
   for (const Stage& stage : stages) {
-    if (output.cells.never() && (stage.until_parted || !stage.until_mean.empty()))
+    if (!fields.has("/output/cells") && (stage.until_parted || !stage.until_mean.empty()))
       fields.attempt([&] {
         fields.refuse(stage.pointer + "/until",
                       "outputs end such a stage, and no cells are written\ngive output.cells");

@@ -81,7 +81,7 @@ def main():
                 abs(float(last[column]) / (sign * end["flow_in"]) - 1) > 1e-9
                 for column, end, sign in (("inlet_volume_m2", inlet, 1), ("outlet_volume_m2", outlet, -1))),
         }.items() if there]
-        sys.exit("; ".join(faults))
+        sys.exit("; ".join(faults) or None)
 
 
 if __name__ == "__main__":
