@@ -10,7 +10,7 @@ PROGRAMS = ("rouleau ", "build/release/bin/", "scripts/", "cmake ", "ctest ", "p
 # Not run, and why. Options they show are compared with --help all the same where it is a script or program of Rouleau's.
 LEFT_OUT = [
     (r"scripts/(demo|test|build|install-dependencies)\b", "installs packages or builds everything: it is what made the build this test runs in"),
-    (r"scripts/(paper|experiments|blood|rheology|dilute-viscosity|test-aarch64|tidy)\b", "takes minutes to hours; results are in the page"),
+    (r"scripts/(paper|experiments|blood|break-up|rheology|dilute-viscosity|test-aarch64|tidy)\b", "takes minutes to hours; results are in the page"),
     (r"rouleau limits (limits|tests/stability)/", "tries hundreds of runs; tests/limits runs the command on small files, and reads these"),
     (r"scripts/notebooks\b", "runs for minutes; tests/python/check_notebooks.py runs them with smaller scenes"),
     (r"scripts/(package|check-packages)\b", "minutes; tests/packages looks into packages of the build that is tested"),
