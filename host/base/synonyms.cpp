@@ -1,7 +1,7 @@
 #include "synonyms.hpp"
 
 #include <algorithm>
-#include <ranges>
+#include <sstream>
 
 #include "text.hpp"
 
@@ -64,8 +64,10 @@ constexpr Meaning table[] = {
 const std::vector<Synonym>& synonyms() {
   static const std::vector<Synonym> all = [] {
     std::vector<Synonym> found;
-    for (const auto& [ours, words] : table)
-      for (const auto word : std::views::split(words, ' ')) found.push_back({{word.begin(), word.end()}, ours});
+    for (const auto& [ours, words] : table) {
+      std::istringstream parts{std::string(words)};
+      for (std::string word; parts >> word;) found.push_back({word, ours});
+    }
     return found;
   }();
   return all;
