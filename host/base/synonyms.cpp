@@ -1,7 +1,6 @@
 #include "synonyms.hpp"
 
 #include <algorithm>
-#include <sstream>
 
 #include "text.hpp"
 
@@ -64,9 +63,12 @@ constexpr Meaning table[] = {
 const std::vector<Synonym>& synonyms() {
   static const std::vector<Synonym> all = [] {
     std::vector<Synonym> found;
-    for (const auto& [ours, words] : table) {
-      std::istringstream parts{std::string(words)};
-      for (std::string word; parts >> word;) found.push_back({word, ours});
+    for (auto [ours, words] : table) {
+      while (!words.empty()) {
+        const std::size_t length = std::min(words.find(' '), words.size());
+        found.push_back({words.substr(0, length), ours});
+        words.remove_prefix(std::min(length + 1, words.size()));
+      }
     }
     return found;
   }();
