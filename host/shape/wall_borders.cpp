@@ -163,7 +163,7 @@ std::optional<Vec<3>> overlap(const core::Border<3>& border, int axis) {
     int line;
     double height;
     int enters;  ///< -1: leaves
-    auto operator<=>(const Crossing&) const = default;
+    auto operator<=>(const Crossing&) const = default;  // NOLINT(modernize-use-nullptr)
   };
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   Eigen::AlignedBox3d box;
@@ -208,8 +208,9 @@ std::optional<Vec<3>> overlap(const core::Border<3>& border, int axis) {
       found.reset(), inside = 0;
     } else if (!found && next.height - here.height > touching && (inside < 0 || inside > 1)) {
       Vec<3>& place = found.emplace();
-      place[u] = box.min()[u] + (here.line / lines + offset[0]) * step[u];
-      place[v] = box.min()[v] + (here.line % lines + offset[1]) * step[v];
+      const int i_u = here.line / lines, i_v = here.line % lines;
+      place[u] = box.min()[u] + (i_u + offset[0]) * step[u];
+      place[v] = box.min()[v] + (i_v + offset[1]) * step[v];
       place[axis] = (here.height + next.height) / 2;
     }
   }
