@@ -162,7 +162,7 @@ std::optional<Vec<3>> overlap(const core::Border<3>& border, int axis) {
   struct Crossing {
     int line;
     double height;
-    int enters;  ///< -1: leaves
+    int enters;                                         ///< -1: leaves
     auto operator<=>(const Crossing&) const = default;  // NOLINT(modernize-use-nullptr)
   };
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
