@@ -26,12 +26,12 @@ constexpr Observable at_opening(const char* name, const char* unit, const char* 
   return {.name = name, .unit = unit, .doc = doc, .value = of_output<member>, .has_means = true, .at_openings = true};
 }
 
-/// Of the inlet or the outlet, per depth in the plane.
-template <auto member>
-constexpr Observable opening_flow(const char* name, bool space, const char* doc) {
-  Observable made = at_opening<member>(name, space ? "m3/s" : "m2/s", doc);
-  made.in_space = space, made.in_plane = !space;
-  return made;
+/// A column in the plane, per depth, and the same in space, where it has another unit.
+std::array<Observable, 2> in_plane_and_space(const Observable& column, const char* space_unit) {
+  std::array<Observable, 2> both{column, column};
+  both[0].in_plane = true;
+  both[1].unit = space_unit, both[1].in_space = true;
+  return both;
 }
 
 /// That of an opening, of an end's list, which may have ended before it.
@@ -80,10 +80,10 @@ void add_opening(std::vector<Observable>& columns, bool cells) {
         end == 0 ? "cells that came in through it, less those that left" : "cells that left through it";
     add({.name = of_cells, .unit = "", .doc = doc, .value = cells_of, .of_traffic = true});
   } else {
-    add({.name = flow, .unit = "m2/s", .doc = through, .value = flow_of, .in_plane = true, .at_openings = true});
-    add({.name = flow, .unit = "m3/s", .doc = through, .value = flow_of, .in_space = true, .at_openings = true});
-    add({.name = volume, .unit = "m2", .doc = in_all, .value = volume_of, .in_plane = true, .at_openings = true});
-    add({.name = volume, .unit = "m3", .doc = in_all, .value = volume_of, .in_space = true, .at_openings = true});
+    const Observable flows{.name = flow, .unit = "m2/s", .doc = through, .value = flow_of, .at_openings = true};
+    const Observable volumes{.name = volume, .unit = "m2", .doc = in_all, .value = volume_of, .at_openings = true};
+    for (const Observable& column : in_plane_and_space(flows, "m3/s")) add(column);
+    for (const Observable& column : in_plane_and_space(volumes, "m3")) add(column);
   }
 }
 
@@ -102,20 +102,18 @@ constexpr const char* volume_out = "likewise, that flowed out";
 }  // namespace
 
 std::vector<Observable> columns_at_openings() {
-  std::vector<Observable> all = {
-      opening_flow<&Snapshot::inlet_flow>("inlet_flow", false, through_inlet),
-      opening_flow<&Snapshot::inlet_flow>("inlet_flow", true, through_inlet),
-      opening_flow<&Snapshot::outlet_flow>("outlet_flow", false, through_outlet),
-      opening_flow<&Snapshot::outlet_flow>("outlet_flow", true, through_outlet),
-      at_opening<&Snapshot::inlet_pressure>("inlet_pressure", "Pa",
-                                            "mean of the fluid's nodes at the inlet, half a spacing behind it"),
-      at_opening<&Snapshot::outlet_pressure>("outlet_pressure", "Pa", "likewise, before the outlet")};
-  const auto volume = [&](const char* name, const char* doc, Value (*value)(const Row&)) {
-    all.push_back({.name = name, .unit = "m2", .doc = doc, .value = value, .in_plane = true, .at_openings = true});
-    all.push_back({.name = name, .unit = "m3", .doc = doc, .value = value, .in_space = true, .at_openings = true});
+  std::vector<Observable> all;
+  const auto add = [&](const Observable& column, const char* space_unit) {
+    for (const Observable& one : in_plane_and_space(column, space_unit)) all.push_back(one);
   };
-  volume("inlet_volume", volume_in, volume_through<0>);
-  volume("outlet_volume", volume_out, volume_through<1>);
+  add(at_opening<&Snapshot::inlet_flow>("inlet_flow", "m2/s", through_inlet), "m3/s");
+  add(at_opening<&Snapshot::outlet_flow>("outlet_flow", "m2/s", through_outlet), "m3/s");
+  all.push_back(at_opening<&Snapshot::inlet_pressure>(
+      "inlet_pressure", "Pa", "mean of the fluid's nodes at the inlet, half a spacing behind it"));
+  all.push_back(at_opening<&Snapshot::outlet_pressure>("outlet_pressure", "Pa", "likewise, before the outlet"));
+  add({.name = "inlet_volume", .unit = "m2", .doc = volume_in, .value = volume_through<0>, .at_openings = true}, "m3");
+  add({.name = "outlet_volume", .unit = "m2", .doc = volume_out, .value = volume_through<1>, .at_openings = true},
+      "m3");
   add_openings(all, false, std::make_integer_sequence<int, most_openings>());
   return all;
 }
