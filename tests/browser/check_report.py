@@ -334,6 +334,17 @@ class The_page_of_a_run(PageCase):
         found = page.run(f"(run => {times}.map(time => outputAt(run, time)))({data})")
         self.assertEqual(found, list(range(len(times))))
 
+    def test_says_as_the_terminal_from_when_on_all_are_single(self):
+        """Though two come close once more, without a bond."""
+        single, apart = [[0], [1], [2], [3]], [[0], [1, 2], [3]]
+        page = self.open(folder / "a" / "report.html")
+        found = page.run("""(history => joinHistory({...data, summary: {...data.summary, aggregate_history: history}}).map(h => [h.strain, h.count]))(%s)""" % json.dumps(
+            [{"strain": 0, "count": 4, "members": single, "through_image": False}, {"strain": 1, "count": 3, "members": apart, "through_image": False},
+             {"strain": 10, "count": 4, "members": single, "through_image": False},
+             {"strain": 12, "count": 3, "members": apart, "joined": single, "through_image": False},
+             {"strain": 13, "count": 4, "members": single, "through_image": False}]))
+        self.assertEqual(found, [[0, 4], [1, 3], [10, 4]])
+
     def test_of_a_run_that_was_killed_says_so(self):
         directory = folder / "killed"
         shutil.copytree(folder / "a", directory)

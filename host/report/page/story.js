@@ -10,8 +10,13 @@ const attracts = ({summary}) => summary?.contacts ? summary.contacts.attracting.
   : Boolean(summary) && (summary.wells?.some(well => typeof well.depth_J_m2 === "number" && !["wall", "self"].includes(well.between?.[1])) ?? true);
 /// Whether so few columns are empty that the cell-free layers are no property of the box.
 const layersAreThere = means => (means?.cell_free_layer_empty?.mean ?? 1) < .05;
-/// The changes of who is joined: none where nothing attracts.
-const joinHistory = run => attracts(run) ? (run.summary.aggregate_history ?? []).map(h => h.joined ? {...h, members: h.joined, count: h.joined.length} : h).filter(h => Array.isArray(h.members)) : [];
+/// The changes of who is joined: none where nothing attracts. Cells that only come close, or part, change no bond.
+function joinHistory(run) {
+  if (!attracts(run)) return [];
+  const history = (run.summary.aggregate_history ?? []).map(h => h.joined ? {...h, members: h.joined, count: h.joined.length} : h).filter(h => Array.isArray(h.members));
+  const what = h => JSON.stringify([h.members, h.through_image]);
+  return history.filter((h, k) => k === 0 || h.met_images || what(h) !== what(history[k - 1]));
+}
 
 /// The changes of the aggregates without those that were undone within three outputs: cells at the edge of
 /// output.aggregate_gap flicker. {count, members, time_s, strain} each, the first is how the run began.
